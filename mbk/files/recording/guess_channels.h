@@ -37,10 +37,10 @@ struct ChannelGuess {
 };
 
 /// Time by its name, or as the only signal that increases in even steps; position, force, reference and acceleration by
-/// the words in their names, in file order if no axis is named. Three axes where position and force are both named along
-/// x, y and z. Units by the names or, if missing, by size: time whose
-/// steps are longer than 0.2 is in ms, positions that reach more than 3 from their mean are in mm. This is a guess: the
-/// user, or a check of the data read with it, must confirm it.
+/// the words in their names, in file order if no axis is named. Three axes where position and force are both named
+/// along x, y and z. Units by the names or, if missing, by size: time whose steps are longer than 0.2 is in ms,
+/// positions that reach more than 3 from their mean are in mm. This is a guess: the user, or a check of the data read
+/// with it, must confirm it.
 [[nodiscard]] ChannelGuess guess_channels(const std::vector<FileSignal>& signals);
 
 }  // namespace mbk::recording

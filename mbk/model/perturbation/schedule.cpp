@@ -74,8 +74,7 @@ Result<Schedule> Schedule::multisine(std::vector<Multisine> axes, Quantity quant
                      "shorten the moving-in time, or lengthen the perturbation");
   }
   const MinimumJerk growth({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, moving_in);
-  return with_countable_cycles(
-      Schedule(Sines{std::move(axes), growth, moving_in}, quantity, space, duration));
+  return with_countable_cycles(Schedule(Sines{std::move(axes), growth, moving_in}, quantity, space, duration));
 }
 
 Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantity quantity, double tail, Space space) {
@@ -130,26 +129,25 @@ int Schedule::axes() const {
 Jet<AxesVector> Schedule::at(double t) const {
   const AxesVector zero = AxesVector::Zero(axes());
   if (t < 0.0) return {zero, zero, zero};
-  return std::visit(
-      Overloaded{[&](const Rest&) -> Jet<AxesVector> {
-                   return {zero, zero, zero};
-                 },
-                 [&](const Sines& sines) -> Jet<AxesVector> {
-                   const Jet<double> g = sines.growth.at(t);
-                   Jet<AxesVector> r{zero, zero, zero};
-                   for (Eigen::Index i = 0; i < zero.size(); ++i) {
-                     const Jet<double> s = sines.axes[static_cast<std::size_t>(i)].at(t);
-                     r.value[i] = g.value * s.value;
-                     r.first[i] = g.first * s.value + g.value * s.first;
-                     r.second[i] = g.second * s.value + 2.0 * g.first * s.first + g.value * s.second;
-                   }
-                   return r;
-                 },
-                 [&](const PulseSchedule& pulses) { return pulses.at(t); },
-                 [&](const RampAndHold& ramps) { return of_plane(ramps.at(t)); },
-                 [&](const ReachSchedule& reaches) { return of_plane(reaches.at(t)); },
-                 [&](const Binary& binary) { return along(binary.sequence.at(t), binary.direction_B); }},
-      shape_);
+  return std::visit(Overloaded{[&](const Rest&) -> Jet<AxesVector> {
+                                 return {zero, zero, zero};
+                               },
+                               [&](const Sines& sines) -> Jet<AxesVector> {
+                                 const Jet<double> g = sines.growth.at(t);
+                                 Jet<AxesVector> r{zero, zero, zero};
+                                 for (Eigen::Index i = 0; i < zero.size(); ++i) {
+                                   const Jet<double> s = sines.axes[static_cast<std::size_t>(i)].at(t);
+                                   r.value[i] = g.value * s.value;
+                                   r.first[i] = g.first * s.value + g.value * s.first;
+                                   r.second[i] = g.second * s.value + 2.0 * g.first * s.first + g.value * s.second;
+                                 }
+                                 return r;
+                               },
+                               [&](const PulseSchedule& pulses) { return pulses.at(t); },
+                               [&](const RampAndHold& ramps) { return of_plane(ramps.at(t)); },
+                               [&](const ReachSchedule& reaches) { return of_plane(reaches.at(t)); },
+                               [&](const Binary& binary) { return along(binary.sequence.at(t), binary.direction_B); }},
+                    shape_);
 }
 
 AxesVector Schedule::reference(double t) const {

@@ -44,17 +44,17 @@ struct ScheduleEvent {
 /// Demands of a schedule over its whole duration, including moving in and pauses. u is the unit of its value. Peaks are
 /// those of the continuous signal, not of its samples.
 struct Facts {
-  double peak = 0.0;                                       ///< largest |r| of all axes together [u]
-  double peak_time = 0.0;                                  ///< where [s]
-  double rms = 0.0;                                        ///< √(mean of |r|²) [u]
-  double peak_speed = 0.0;                                 ///< largest |ṙ| [u/s]
-  double peak_speed_time = 0.0;                            ///< where [s]
-  double peak_acceleration = 0.0;                          ///< largest |r̈| [u/s²], also that after a jump
-  double peak_acceleration_time = 0.0;                     ///< where [s]
-  AxesVector axis_peak;                                    ///< largest |rᵢ| of each axis [u]
-  AxesVector axis_rms;                                     ///< of each axis [u]
-  AxesVector crest_factor;                                 ///< axis_peak/axis_rms; 0 for an axis at rest
-  Hertz lowest_frequency;                                  ///< sines: lowest line; else 0
+  double peak = 0.0;                    ///< largest |r| of all axes together [u]
+  double peak_time = 0.0;               ///< where [s]
+  double rms = 0.0;                     ///< √(mean of |r|²) [u]
+  double peak_speed = 0.0;              ///< largest |ṙ| [u/s]
+  double peak_speed_time = 0.0;         ///< where [s]
+  double peak_acceleration = 0.0;       ///< largest |r̈| [u/s²], also that after a jump
+  double peak_acceleration_time = 0.0;  ///< where [s]
+  AxesVector axis_peak;                 ///< largest |rᵢ| of each axis [u]
+  AxesVector axis_rms;                  ///< of each axis [u]
+  AxesVector crest_factor;              ///< axis_peak/axis_rms; 0 for an axis at rest
+  Hertz lowest_frequency;               ///< sines: lowest line; else 0
   Hertz highest_frequency;  ///< sines: highest line. Pulses: −3 dB of G, eq. 3.5. Binary: of sinc·G. Ramps: of the
                             ///< velocity. Rest: 0
 };
@@ -70,16 +70,16 @@ struct Limits {
   std::function<Result<void>(const Eigen::Vector2d& displacement)> reachable;
 };
 
-/// A signal r(t) of two axes, or of one or three, with its facts: all commands to a simulated or real robot in one trial. It begins at rest;
+/// A signal r(t) of one to three axes with its facts: all commands to a robot in one trial. It begins at rest;
 /// after its duration sines continue, a binary sequence keeps its last value, everything else rests.
 class Schedule {
  public:
   static constexpr double kLongest = 3600.0;  ///< [s]; split longer trials into several schedules
   static constexpr double kMaxCycles = 1e5;   ///< of the highest frequency within the duration
 
-  /// One multisine for each axis, r = g(t) [s₁(t), s₂(t), …], with g from 0 to 1 by minimum jerk. The periods may differ.
+  /// One multisine for each axis, r = g(t) [s₁(t), s₂(t), …], g from 0 to 1 by minimum jerk. The periods may differ.
   /// @param moving_in  time in which g grows [s]
-  /// @fails  not one to three axes; moving in ≤ 0 or longer than the duration; duration ≤ 0, above kLongest or not finite; more than
+  /// @fails  not 1 to 3 axes; moving in ≤ 0 or longer than the duration; duration ≤ 0, above kLongest, not finite; over
   /// kMaxCycles of the highest line.
   [[nodiscard]] static Result<Schedule> multisine(std::vector<Multisine> axes, Quantity quantity, Space space,
                                                   double duration, double moving_in);

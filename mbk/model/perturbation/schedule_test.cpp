@@ -109,7 +109,8 @@ TEST(ScheduleFacts, OfACircleAreItsClosedForm) {
   // Radius 10 mm at 2 Hz, grown in 1 s: from then on |r|, |ṙ|, |r̈| are constant.
   const double omega = 4.0 * kPi;
   const Schedule circle =
-      Schedule::multisine({sine(0.01, 2), sine(0.01, 2, 0.5 * kPi)}, Quantity::position, Space::hand, 100.0, 1.0).value();
+      Schedule::multisine({sine(0.01, 2), sine(0.01, 2, 0.5 * kPi)}, Quantity::position, Space::hand, 100.0, 1.0)
+          .value();
   const Facts facts = circle.facts();
   EXPECT_NEAR(facts.peak, 0.01, 1e-14);
   EXPECT_NEAR(facts.axis_peak.x(), 0.01, 1e-14);

@@ -37,9 +37,9 @@ class UnderdampedPulse {
 };
 
 /// A train of underdamped pulses in directions spaced evenly around a circle, or in space along all combinations of −1,
-/// 0 and 1, each repeated, in random order and with random durations and pauses (Dyck 2013, §3.4 and §4.1). After a pulse the signal returns to zero on a minimum-jerk
-/// path that takes over value, velocity and acceleration, and rests there until the next one. It is a displacement of
-/// the hand or a force on it, depending on the unit of the amplitude.
+/// 0 and 1, each repeated, in random order and with random durations and pauses (Dyck 2013, §3.4 and §4.1). After a
+/// pulse the signal returns to zero on a minimum-jerk path that takes over value, velocity and acceleration, and rests
+/// there until the next one. It is a displacement of the hand or a force on it, depending on the unit of the amplitude.
 class PulseSchedule {
  public:
   static constexpr int kMaxPulses = 10000;
@@ -61,9 +61,9 @@ class PulseSchedule {
   };
 
   struct Pulse {
-    double onset = 0.0;                        ///< [s]
-    double offset = 0.0;                       ///< [s]; start of the return
-    int direction = 0;                         ///< 0 … directions − 1
+    double onset = 0.0;      ///< [s]
+    double offset = 0.0;     ///< [s]; start of the return
+    int direction = 0;       ///< 0 … directions − 1
     double angle = 0.0;      ///< of the pulse from +x, in space of its projection on the xy plane [rad]
     AxesVector direction_B;  ///< unit vector of the pulse, base frame
   };

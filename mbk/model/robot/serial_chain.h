@@ -25,7 +25,7 @@ class SerialChain : public Mechanism {
     std::string base_link;                             ///< empty: the root of the tree
     std::string tip_link;                              ///< empty: the only leaf of the tree
     Eigen::Vector3d gravity = {0.0, 0.0, -9.81};       ///< acceleration of free fall, base frame [m/s²]
-    std::vector<Axis> hand_axes = {Axis::x, Axis::y};  ///< of the base frame, in which the hand is measured: up to three
+    std::vector<Axis> hand_axes = {Axis::x, Axis::y};  ///< of the base frame, along which the hand is measured
     Eigen::Vector3d tool = {0.0, 0.0, 0.0};            ///< the hand from the tip link, tip frame [m]
     std::vector<double> zero;  ///< the URDF's coordinate where the recording's is 0 [rad or m]; empty: 0 for all
     std::vector<int> sign;     ///< +1 or −1: the URDF's coordinate is zero + sign · the recording's; empty: +1

@@ -17,9 +17,9 @@ using Eigen::Vector3d;
 
 /// A segment relative to the body's mass and the segment's length (de Leva 1996, table 4, men).
 struct Segment {
-  double mass, centre;               // centre from the proximal joint
+  double mass, centre;                 // centre from the proximal joint
   double sagittal, transverse, axial;  // radii of gyration
-  double length;                     // [m]
+  double length;                       // [m]
 };
 constexpr Segment kUpperArm{0.0271, 0.5772, 0.285, 0.269, 0.158, 0.2817};
 constexpr Segment kForearm{0.0162, 0.4574, 0.276, 0.265, 0.121, 0.2689};
@@ -134,8 +134,7 @@ Vector3d SpatialArm::joint_angles(const Vector3d& hand) const {
   const Vector3d p = hand - shoulder_;
   const double q3 = std::acos((p.squaredNorm() - l1 * l1 - l2 * l2) / (2.0 * l1 * l2));
   // The hand of the arm that hangs down, with this elbow; elevation turns its x and z, then the plane x and y
-  const Vector3d hanging(l2 * std::sin(q3) * std::cos(psi), l2 * std::sin(q3) * std::sin(psi),
-                         -l1 - l2 * std::cos(q3));
+  const Vector3d hanging(l2 * std::sin(q3) * std::cos(psi), l2 * std::sin(q3) * std::sin(psi), -l1 - l2 * std::cos(q3));
   const double radius = std::hypot(hanging.x(), hanging.z());
   const double elevated = std::acos(-p.z() / radius);  // q₂ and what the elbow adds to it
   const double q2 = elevated - std::atan2(hanging.x(), -hanging.z());
