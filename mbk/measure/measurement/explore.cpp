@@ -90,7 +90,7 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
         MBK_TRY(preprocess::undo_force_delay(even->recording ? *even->recording : recording, options.force_delay));
     even->recording = std::move(in_time);
   }
-  if (options.force_rotation != 0.0) {
+  if (options.force_rotation != preprocess::RotationVector{}) {
     auto turned =
         MBK_TRY(preprocess::turn_force(even->recording ? *even->recording : recording, options.force_rotation));
     even->recording = std::move(turned);

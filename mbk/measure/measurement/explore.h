@@ -11,6 +11,7 @@
 #include "mbk/measure/explore/impulse_response.h"
 #include "mbk/measure/explore/measure_plateaus.h"
 #include "mbk/measure/explore/measure_reaches.h"
+#include "mbk/measure/preprocess/force_rotation.h"
 #include "mbk/measure/preprocess/options.h"
 #include "mbk/model/trial/exploration.h"
 #include "mbk/model/trial/recording.h"
@@ -27,11 +28,11 @@ struct ExploredSignals {
 /// Options of an exploration of recordings without a model.
 struct ExploreOptions {
   preprocess::Options preprocess;
-  std::optional<Hertz> resample;           ///< put the samples on an even clock first
-  double force_delay = 0.0;                ///< by which the force was read late, undone first [s]
-  double force_rotation = 0.0;             ///< by which the force is turned from x to y first [rad]
-  std::optional<ExploredSignals> signals;  ///< absent: from the position to −F
-  std::optional<ExplorationPart> only;     ///< absent: every part
+  std::optional<Hertz> resample;                   ///< put the samples on an even clock first
+  double force_delay = 0.0;                        ///< by which the force was read late, undone first [s]
+  preprocess::RotationVector force_rotation = {};  ///< by which the force is turned first [rad]
+  std::optional<ExploredSignals> signals;          ///< absent: from the position to −F
+  std::optional<ExplorationPart> only;             ///< absent: every part
   explore::FrequencyResponseOptions frequency_response;
   explore::ImpulseResponseOptions impulse_response;
   explore::PlateauOptions plateau;      ///< of a reference of ramps and holds

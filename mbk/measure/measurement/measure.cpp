@@ -119,7 +119,7 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
   if (options.force_delay != 0.0) {
     source.even = MBK_TRY(preprocess::undo_force_delay(source.recording(), options.force_delay));
   }
-  if (options.force_rotation != 0.0) {
+  if (options.force_rotation != preprocess::RotationVector{}) {
     source.even = MBK_TRY(preprocess::turn_force(source.recording(), options.force_rotation));
   }
   if (options.preprocess.force_source == ForceSource::sensor) return source;
@@ -167,9 +167,13 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
     trial->notes.push_back(
         fmt::format("the force was shifted {:g} ms earlier, as requested", 1e3 * options.force_delay));
   }
-  if (options.force_rotation != 0.0) {
+  if (options.force_rotation != preprocess::RotationVector{}) {
+    const auto& [x, y, z] = options.force_rotation;
     trial->notes.push_back(
-        fmt::format("the force was rotated by {:g}° from x to y, as requested", kDegrees * options.force_rotation));
+        x == 0.0 && y == 0.0
+            ? fmt::format("the force was rotated by {:g}° from x to y, as requested", kDegrees * z)
+            : fmt::format("the force was rotated by the rotation vector ({:g}, {:g}, {:g})°, as requested",
+                          kDegrees * x, kDegrees * y, kDegrees * z));
   }
   if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
   if (source.jitter) trial->warnings.push_back(*source.jitter);

@@ -9,6 +9,7 @@
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
 #include "mbk/measure/identify/impedance_fit.h"
+#include "mbk/measure/preprocess/force_rotation.h"
 #include "mbk/measure/preprocess/prepare.h"
 #include "mbk/model/trial/diagnostics.h"
 #include "mbk/model/trial/measurement.h"
@@ -38,9 +39,9 @@ struct Options {
   /// early. Shorter than the recording.
   double force_delay = 0.0;
 
-  /// Angle by which the force is rotated first, from x to y [rad]: corrects a sensor mounted at an angle. Two axes
-  /// only.
-  double force_rotation = 0.0;
+  /// Rotation vector by which the force is rotated first [rad]: corrects a sensor mounted at an angle. Two axes: about
+  /// z, from x to y.
+  preprocess::RotationVector force_rotation = {};
 
   /// Also judge passivity: energy absorbed by the limb, and prediction of its model.
   bool passivity = true;

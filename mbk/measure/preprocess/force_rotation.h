@@ -1,13 +1,19 @@
 #pragma once
 
+#include <array>
+
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::preprocess {
 
-/// The recording with its force turned in the plane, F ← R(α) F: undoes a force sensor that is mounted at an angle.
-/// @param angle  α [rad], from x to y
-/// @fails  usage: not finite; data: no force with two axes.
-[[nodiscard]] Result<Recording> turn_force(const Recording& recording, double angle);
+/// Along the axis of a rotation, as long as its angle [rad]. A rotation of the plane, from x to y, is {0, 0, α}.
+using RotationVector = std::array<double, 3>;
+
+/// The recording with its force turned, F ← R F: undoes a force sensor that is mounted at an angle. With r = θ k,
+///   R F = F + sin θ k × F + (1 − cos θ) k × (k × F)   (Rodrigues).
+/// @param rotation  r
+/// @fails  usage: not finite; data: no force with two axes, or with three if the rotation is not about z.
+[[nodiscard]] Result<Recording> turn_force(const Recording& recording, const RotationVector& rotation);
 
 }  // namespace mbk::preprocess

@@ -111,9 +111,7 @@ const OptionTable<ExploreRequest>& explore_table() {
             resample_option(), [](auto& request) -> auto& { return request.options.resample; })
         .add(
             force_delay_option(), [](auto& request) -> auto& { return request.options.force_delay; }, kMilliseconds)
-        .add(
-            force_rotation_option(kWindowGroup), [](auto& request) -> auto& { return request.options.force_rotation; },
-            kDegrees)
+        .add_row(force_rotation_row<ExploreRequest>(kWindowGroup))
         .add(
             {"--only", "", "compute only this part (default: all)"},
             [](auto& request) -> auto& { return request.options.only; })

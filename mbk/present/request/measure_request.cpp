@@ -95,9 +95,7 @@ const OptionTable<MeasureRequest>& measure_table() {
         .add(
             force_delay_option(kFilterGroup), [](auto& request) -> auto& { return request.options.force_delay; },
             kMilliseconds)
-        .add(
-            force_rotation_option(kFilterGroup), [](auto& request) -> auto& { return request.options.force_rotation; },
-            kDegrees)
+        .add_row(force_rotation_row<MeasureRequest>(kFilterGroup))
         .include(
             identify_table(), [](auto& request) -> auto& { return request.options.identify; })
         .group("Plausibility")
@@ -156,7 +154,7 @@ Result<measurement::Options> measurement_options(const MeasureRequest& request, 
     if (options.force_delay != 0.0) {
       return bad_usage("--force-delay-ms is valid only for a measured force", "omit it");
     }
-    if (options.force_rotation != 0.0) {
+    if (options.force_rotation != preprocess::RotationVector{}) {
       return bad_usage("--force-rotation-deg is valid only for a measured force", "omit it");
     }
   } else if (request.robot) {

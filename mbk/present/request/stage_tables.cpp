@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+
+#include "mbk/base/core/option_checks.h"
+#include "mbk/base/core/units.h"
 
 namespace mbk::request {
 
@@ -127,14 +131,34 @@ OptionFacts force_delay_option(const char* group) {
           .group = group};
 }
 
+std::optional<preprocess::RotationVector> rotation_vector(const std::string& text) {
+  const OptionCheck angle = number_within(180.0);
+  std::vector<double> degrees;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string one = text.substr(begin, end - begin);
+    if (!angle.wrong(one).empty()) return std::nullopt;
+    option_values::set(degrees.emplace_back(), one, kDegrees);
+    begin = end + 1;
+  }
+  if (degrees.size() == 1) return preprocess::RotationVector{0.0, 0.0, degrees[0]};
+  if (degrees.size() == 3) return preprocess::RotationVector{degrees[0], degrees[1], degrees[2]};
+  return std::nullopt;
+}
+
 OptionFacts force_rotation_option(const char* group) {
-  return {
-      .name = "--force-rotation-deg",
-      .value = "DEG",
-      .help =
-          "rotate the force by this angle from x towards y first, for a force sensor mounted at an angle (default: 0)",
-      .check = number_within(180.0),
-      .group = group};
+  return {.name = "--force-rotation-deg",
+          .value = "DEG",
+          .help =
+              "rotate the force by this angle from x towards y first, for a force sensor mounted at an angle; with "
+              "three axes also RX,RY,RZ, a rotation vector (default: 0)",
+          .check = {[](const std::string& given) {
+            if (rotation_vector(given)) return std::string();
+            return given.find(',') == given.npos
+                       ? number_within(180.0).wrong(given)
+                       : fmt::format("{} is not three numbers from -180 to 180, RX,RY,RZ", quoted(given));
+          }},
+          .group = group};
 }
 
 OptionFacts protocol_option(const char* group) {

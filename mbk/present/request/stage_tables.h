@@ -1,10 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "mbk/base/core/option_table.h"
 #include "mbk/base/core/result.h"
 #include "mbk/measure/identify/impedance_fit.h"
+#include "mbk/measure/preprocess/force_rotation.h"
 #include "mbk/measure/preprocess/options.h"
 
 /// The options of stages that several requests share.
@@ -25,6 +28,16 @@ inline constexpr const char* kFilterGroup = "Filters";
 /// --force-delay-ms and --force-rotation-deg, likewise.
 [[nodiscard]] OptionFacts force_delay_option(const char* group = "");
 [[nodiscard]] OptionFacts force_rotation_option(const char* group = "");
+/// [rad] of "ANGLE" about z or "RX,RY,RZ" [°]; nothing for other texts.
+[[nodiscard]] std::optional<preprocess::RotationVector> rotation_vector(const std::string& text);
+template <class Request>
+[[nodiscard]] typename OptionTable<Request>::Row force_rotation_row(const char* group) {
+  return {force_rotation_option(group),
+          [](Request& request, const std::vector<std::string>& texts) {
+            request.options.force_rotation = rotation_vector(texts.back()).value_or(preprocess::RotationVector{});
+          },
+          [](const Request& request) { return request.options.force_rotation == preprocess::RotationVector{}; }};
+}
 /// --protocol, likewise.
 [[nodiscard]] OptionFacts protocol_option(const char* group);
 
