@@ -20,7 +20,7 @@ export function significant(value: Value | undefined, digits = 3): string {
   if (value === null || value === undefined) return undefinedText;
   if (value === 0) return "0";
   const magnitude = Math.floor(Math.log10(Math.abs(value)));
-  if (magnitude < -4 || magnitude > 6) {
+  if (magnitude < -4 || magnitude > 5) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e") as [string, string];
     return `${minus(mantissa)}·10${superscript(String(Number(exponent)))}`;
   }
