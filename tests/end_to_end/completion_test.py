@@ -33,9 +33,8 @@ TYPED = {  # what has been typed → what is offered
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
     ("validate", ""): ["after-onset", "all", "change", "closed-loop", "coverage", "faults", "frequency-response", "live-estimate",
                        "misspecification", "one-dimensional", "participant", "passivity", "ramp-and-hold",
-                       "recorded-reliability", "recovery", "reflex", "reliability", "robot", "servo-displacement", "springs",
-                       "teleoperation",
-                       "transfer-function", "virtual-sensor"],
+                       "recorded-reliability", "recovery", "reflex", "reliability", "robot", "servo-displacement", "spatial",
+                       "springs", "teleoperation", "transfer-function", "virtual-sensor"],
     ("rep",): ["reproduce"],
     ("reproduce", "--wi"): ["--without-printed"],
     ("reproduce", "--on"): ["--only"],

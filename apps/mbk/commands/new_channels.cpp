@@ -179,7 +179,7 @@ int run(const NewChannelsArguments& arguments) {
   if (ask) {
     tell(fmt::format(
         "\nF is the force of the hand on the robot; Fx=-4 reverses it, x=2:mm has a unit.\n"
-        "Two axes: x, y, Fx, Fy and the reference xr, yr; three: also z, Fz, zr. One axis: x, F, xr.\n{}\n",
+        "Two axes: x, y, Fx, Fy, reference xr, yr; a third: z, Fz, zr. One: x, F, xr.\n{}\n",
         guess.missing.empty() ? "Enter accepts; or type what to change, e.g. Fx=4,Fy=5"
                               : fmt::format("Type what is missing or wrong, e.g. {}=3", guess.missing.front())));
   }

@@ -86,13 +86,13 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
   }
   if (!report.file) return {};
   MBK_TRY(mbk::report::page("", {}));
-  MBK_TRY(check_report_format(*report.file));
   std::error_code error;
   if (output.file && std::filesystem::weakly_canonical(*output.file, error) ==
                          std::filesystem::weakly_canonical(*report.file, error)) {
     return bad_usage("--out and --report name the same file", "choose another name for one of them");
   }
-  return check_new_file(*report.file, "--report", output.overwrite, inputs);
+  MBK_TRY(check_new_file(*report.file, "--report", output.overwrite, inputs));
+  return check_report_format(*report.file);
 }
 
 }  // namespace mbk::app

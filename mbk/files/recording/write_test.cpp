@@ -396,7 +396,16 @@ TEST(FormatOf, GoesByTheNameThatIsGivenThenByTheEndOfTheFile) {
   EXPECT_EQ(format_of("x.y/a.csv"), Format::csv);
   EXPECT_EQ(format_of("a.mat", "mat73"), Format::mat73);
   EXPECT_EQ(format_of("a", "csv"), Format::csv);
-  EXPECT_EQ(format_of("a.csv", "mat"), Format::mat5);
+  EXPECT_EQ(format_of("a.dat", "mat"), Format::mat5);
+}
+
+TEST(FormatOf, RefusesAFormatThatTheExtensionContradicts) {
+  for (const auto& [file, name] : {std::pair("a.csv", "mat"), {"a.mat", "csv"}, {"a.h5", "mat73"}}) {
+    const auto format = format_of(file, name);
+    ASSERT_FALSE(format) << file;
+    EXPECT_EQ(format.error().kind, ErrorKind::usage);
+    EXPECT_THAT(format.error().line(), HasSubstr("extension"));
+  }
 }
 
 TEST(FormatOf, RefusesWhatItDoesNotKnow) {

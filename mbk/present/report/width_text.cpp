@@ -13,6 +13,8 @@ namespace mbk::report {
 namespace {
 
 std::string between(double value, const Interval& interval) {
+  constexpr double kRounding = 1e-12;  // of results that are equal
+  if (std::abs(value) < kRounding) value = 0.0;
   if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return fmt::format("{:.3g}", value);
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", value, interval.first, interval.second);
 }
@@ -54,7 +56,7 @@ std::string width_text(const WidthFindings& widths) {
   if (!rows.empty()) {
     std::vector<std::string> heading = {"", "width", "ratio second/first", ""};
     if (directed) heading = {"", "width", "ratio second/first, minimum", "maximum", ""};
-    if (spatial) heading = {"", "width", "ratio second/first, minimum, maximum", "direction x, y, z", ""};
+    if (spatial) heading = {"", "width", "ratio second/first, min and max", "direction x, y, z", ""};
     rows.insert(rows.begin(), std::move(heading));
     text += table(rows);
     text += paragraph("  ",

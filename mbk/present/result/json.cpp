@@ -88,7 +88,7 @@ Identification estimate_from(const Json& json, Index n) {
   return id;
 }
 
-/// Rows of M; 2 where it is none of 1, 2 and 3.
+/// Rows of M; 2 if they are not 1, 2 or 3.
 Index axes_of(const Json& json) {
   const auto model = json.find("model");
   const bool listed = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array();

@@ -88,9 +88,9 @@ TEST_P(EveryProtocol, VelocityAndAccelerationAreDerivativesOfThePosition) {
     for (const double time : jumps) jump |= std::abs(t - time) <= step;
     if (jump) continue;
     const auto here = motion.at(t), before = motion.at(t - step), after = motion.at(t + step);
-    // h²/6 times |r⃛| < 60 m/s³ and |r⃜| < 1200 m/s⁴, and rounding of 0.3 m over 2h
+    // h²/6 times |r⃛| < 60 m/s³ and |r⃜| < 4000 m/s⁴ (a fast return of a pulse), and rounding of 0.3 m over 2h
     EXPECT_NEAR(((after.value - before.value) / (2.0 * step) - here.first).norm(), 0.0, 1e-7 + 1e-12) << t;
-    EXPECT_NEAR(((after.first - before.first) / (2.0 * step) - here.second).norm(), 0.0, 2e-6) << t;
+    EXPECT_NEAR(((after.first - before.first) / (2.0 * step) - here.second).norm(), 0.0, 7e-6) << t;
   }
 }
 
