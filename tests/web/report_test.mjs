@@ -185,7 +185,7 @@ test("one axis has no ellipses and the units of what moves", () => reading(oneAx
 }));
 
 test("a hand that left the handle is the first thing the report says", () => {
-  const message = "from 31 s on the force varies by at most 5 % of its level before: the hand probably left the handle";
+  const message = "from 31 s on the force varies by at most 5 % of its usual level: the hand probably left the handle";
   const file = changed(unusable.file, "lost", (report) => {
     report.result.warnings = [{ code: "contact-lost", message, try: "measure the part before it: --to 30" }];
   });

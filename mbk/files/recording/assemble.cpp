@@ -445,11 +445,12 @@ class Assembler {
       of_x.back() = 'x';
       const auto x = std::ranges::find(signals_, of_x, [](const Signal& signal) { return signal.kind->name; });
       const Unit* const unit = array.unit.empty() ? candidate.name.unit : find_unit(array.unit);
-      const bool fits = x != signals_.end() && leaf(array.name).starts_with(kind.name) && array.means.empty() &&
-                        !array.obstacle && array.unapplied.empty() && array.clock == x->line.array->clock &&
-                        array.rate_hz == x->line.array->rate_hz && vector_of(array).size() == x->line.size() &&
-                        (unit != nullptr ? kind.accepts(*unit) : array.unit.empty()) &&
-                        std::ranges::count(spare, &kind, [](const Candidate& c) { return c.name.kinds.front(); }) == 1;
+      const bool fits =
+          x != signals_.end() && (array.name.starts_with(kind.name) || leaf(array.name).starts_with(kind.name)) &&
+          array.means.empty() && !array.obstacle && array.unapplied.empty() && array.clock == x->line.array->clock &&
+          array.rate_hz == x->line.array->rate_hz && vector_of(array).size() == x->line.size() &&
+          (unit != nullptr ? kind.accepts(*unit) : array.unit.empty()) &&
+          std::ranges::count(spare, &kind, [](const Candidate& c) { return c.name.kinds.front(); }) == 1;
       if (fits) third.push_back({&kind, vector_of(array), unit, false, array.name, array.name});
     }
     if (!has(third, "hand_z") || !has(third, "force_z")) return;
@@ -469,7 +470,12 @@ class Assembler {
       return name.empty() || std::ranges::any_of(signals_, [&](const Signal& s) { return s.line.array->name == name; });
     });
     if (aside_.empty()) return;
-    recording_.notes.push_back(fmt::format("ignored (names are not channel names): {}", quoted(aside_)));
+    const bool third = std::ranges::any_of(aside_, [](const std::string& name) {
+      const auto kinds = parse_column_name(name).kinds;
+      return kinds.size() == 1 && kinds.front()->name == "force_z";
+    });
+    recording_.notes.push_back(fmt::format("ignored (names are not channel names): {}{}", quoted(aside_),
+                                           third ? "; --axes 3 reads z and Fz" : ""));
   }
 
   /// A note on "reaction (dyn)": a channel with a unit in brackets that it cannot have; "" of any other.

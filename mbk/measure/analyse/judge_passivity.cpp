@@ -234,11 +234,19 @@ std::string predicted(const ModelPassivity& model, const PassivityPrediction& pr
         "account for noise only",
         band, subject, in_straight_motion(model.symmetric), 100.0 * model.coherent_residual);
   }
+  const std::string uncertain = conditions_with(model, Verdict::undecided);
+  if (model.symmetric == Verdict::passive && uncertain.empty()) {
+    return fmt::format(
+        "{} {} absorbs energy in straight motion; circular motion is not tested, because the structure imposes "
+        "symmetric "
+        "M and K",
+        band, subject);
+  }
   return fmt::format("{} {} {}: {}", band, subject,
                      model.symmetric == Verdict::passive
                          ? "absorbs energy in straight motion; in circular motion it is too uncertain"
                          : "is too uncertain",
-                     conditions_with(model, Verdict::undecided));
+                     uncertain);
 }
 
 }  // namespace
@@ -334,6 +342,10 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   }
   if (id.axes > 1) {
     result.antisymmetric = common_verdict(std::span(result.conditions).subspan(kSymmetricConditions));
+    // Symmetry that was imposed, not found, says nothing of circular motion.
+    if (id.structure == Structure::symmetric && result.antisymmetric == Verdict::passive) {
+      result.antisymmetric = Verdict::undecided;
+    }
     result.circular_hz = circular_band(id.model);
   }
   result.curve = curve_of(id, band);

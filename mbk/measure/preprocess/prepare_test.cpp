@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -535,6 +536,46 @@ TEST(Prepare, CarriesSourcesNotesAndDuration) {
   EXPECT_EQ(trial.sources[0].path, "a.csv");
   EXPECT_EQ(trial.notes, recording.notes);
   EXPECT_NEAR(trial.recording_duration, 5.0, 1e-9);
+}
+
+/// 30 s of sines whose force is `share` of what it was from one time to another.
+Recording with_hand_away(double from, double to, double share) {
+  Recording recording = sines(30000).recording;
+  for (const char* const name : {"force_x", "force_y"}) {
+    Vector& force = values_of(recording, name);
+    for (Index i = 0; i < force.size(); ++i) {
+      if (recording.time[i] >= from && recording.time[i] < to) force[i] *= share;
+    }
+  }
+  return recording;
+}
+
+/// What is said of a lost contact; "" if nothing is.
+std::string said_of_contact(const Recording& recording) {
+  const auto trial = prepared(recording);
+  EXPECT_TRUE(trial) << trial.error().line();
+  if (!trial) return "";
+  const auto found = std::ranges::find(trial->warnings, WarningCode::contact_lost, &Warning::code);
+  return found == trial->warnings.end() ? "" : found->message + " | " + found->remedy;
+}
+
+TEST(LostContact, IsToldWithItsTimeWhereverItIs) {
+  EXPECT_THAT(said_of_contact(with_hand_away(20.0, 31.0, 0.05)), HasSubstr("from 20 s on"));
+  EXPECT_THAT(said_of_contact(with_hand_away(20.0, 31.0, 0.05)), HasSubstr("--to 19"));
+  EXPECT_THAT(said_of_contact(with_hand_away(0.0, 8.0, 0.05)), HasSubstr("--from"));
+  EXPECT_THAT(said_of_contact(with_hand_away(9.0, 14.0, 0.05)), HasSubstr("--from 15"));  // the longer part is after it
+  EXPECT_THAT(said_of_contact(with_hand_away(20.0, 24.0, 0.05)), HasSubstr("--to 19"));
+}
+
+TEST(LostContact, IsNotToldOfWhatAHandDoes) {
+  EXPECT_EQ(said_of_contact(with_hand_away(0.0, 0.0, 1.0)), "");
+  EXPECT_EQ(said_of_contact(with_hand_away(15.0, 31.0, 0.3)), "");  // it relaxes
+  Recording moved = with_hand_away(15.0, 20.0, 0.05);               // another movement, without the robot's force
+  for (const char* const name : {"hand_x", "hand_y"}) {
+    Vector& place = values_of(moved, name);
+    for (Index i = 15000; i < 20000; ++i) place[i] += 0.05 * std::sin(2.0 * std::numbers::pi * moved.time[i]);
+  }
+  EXPECT_EQ(said_of_contact(moved), "");
 }
 
 }  // namespace prepare_test

@@ -259,36 +259,47 @@ std::vector<Activity> activity(const Clock& clock, const Signals& signals, const
 
 void warn_of_lost_contact(const Clock& clock, const Signals& signals, const WindowPlan& plan,
                           std::vector<Warning>& warnings) {
-  constexpr double kGone = 0.1, kThere = 0.4, kStillMoves = 0.5;  // of the level before
-  constexpr std::size_t kBefore = 3, kAfter = 2;                  // blocks that show a level
+  constexpr double kGone = 0.1, kThere = 0.4;        // of the usual force
+  constexpr double kMoves = 0.5, kMovesAlike = 2.0;  // of the usual motion: neither rest nor another movement
+  constexpr std::size_t kShows = 3, kLasts = 2;      // blocks
   const std::vector<Activity> blocks = activity(clock, signals, plan);
-  std::vector<double> force, motion;
-  for (std::size_t k = 0; k + kAfter <= blocks.size(); ++k) {
-    if (k >= kBefore) {
-      const double usual = numeric::median(force), moved = numeric::median(motion);
-      std::size_t end = k;
-      double left = 0.0;
-      while (end < blocks.size() && blocks[end].force < kGone * usual && blocks[end].motion > kStillMoves * moved) {
-        left = std::max(left, blocks[end++].force);
-      }
-      // Sudden: a sweep in frequency also changes the force, but gradually. One block may contain the change.
-      const bool in_block_before = blocks[k - 1].force < kThere * usual;
-      const bool sudden = !in_block_before || blocks[k - 2].force >= kThere * usual;
-      if (end - k >= kAfter && sudden) {
-        const double from = clock.seconds(blocks[k - 1].begin), gone = clock.seconds(blocks[k].begin);
-        const bool comes_back = end < blocks.size();
-        const std::string until = comes_back ? fmt::format(" to {:.3g} s", clock.seconds(blocks[end].begin)) : "";
-        warnings.push_back(
-            {WarningCode::contact_lost,
-             fmt::format("from {:.3g} s{} the force varies by at most {:.2g} % of its level before, while the motion "
-                         "continues: the hand probably left the handle, or the force sensor failed",
-                         gone, comes_back ? until : " on", 100.0 * left / usual),
-             fmt::format("measure the part before it: --to {:.3g}", std::floor(10.0 * from) / 10.0)});
-        return;
-      }
-    }
-    force.push_back(blocks[k].force);
-    motion.push_back(blocks[k].motion);
+  const auto usual = [&](std::size_t count, double Activity::*what) {
+    std::vector<double> levels;
+    for (std::size_t k = 0; k < count; ++k) levels.push_back(blocks[k].*what);
+    return levels.size() < kShows ? 0.0 : numeric::median(levels);
+  };
+  const double of_all = usual(blocks.size(), &Activity::force);
+  for (std::size_t k = 0; k + kLasts <= blocks.size(); ++k) {
+    // Of the blocks before, or of all, where the hand was away first.
+    const bool by_before = usual(k, &Activity::force) >= of_all;
+    const std::size_t count = by_before ? k : blocks.size();
+    const double force = usual(count, &Activity::force), motion = usual(count, &Activity::motion);
+    const auto is_lost = [&](const Activity& one) {
+      return one.force < kGone * force && one.motion > kMoves * motion && one.motion < kMovesAlike * motion;
+    };
+    std::size_t end = k;
+    double left = 0.0;
+    while (end < blocks.size() && is_lost(blocks[end])) left = std::max(left, blocks[end++].force);
+    // Sudden: a sweep in frequency also changes the force, but gradually. One block may contain the change.
+    const auto is_there = [&](std::size_t at) { return at < blocks.size() && blocks[at].force >= kThere * force; };
+    const bool sudden =
+        (k > 0 && (is_there(k - 1) || (k > 1 && is_there(k - 2)))) || is_there(end) || is_there(end + 1);
+    if (end - k < kLasts || !sudden) continue;
+    const bool at_first = k == 0, comes_back = end < blocks.size();
+    const double first = clock.seconds(blocks.front().begin), last = clock.seconds(blocks.back().end);
+    const double gone = clock.seconds(blocks[k].begin), back = comes_back ? clock.seconds(blocks[end].begin) : last;
+    const double before = at_first ? 0.0 : clock.seconds(blocks[k - 1].begin) - first, after = last - back;
+    const std::string when =
+        !comes_back ? fmt::format("from {:.3g} s on", gone) : fmt::format("from {:.3g} s to {:.3g} s", gone, back);
+    const std::string remedy =
+        before >= after ? fmt::format("--to {:.3g}", std::floor(10.0 * (first + before)) / 10.0)
+                        : fmt::format("--from {:.3g}", std::ceil(10.0 * clock.seconds(blocks[end].end)) / 10.0);
+    warnings.push_back({WarningCode::contact_lost,
+                        fmt::format("{} the force varies by at most {:.2g} % of its usual level, while the motion "
+                                    "continues: the hand probably left the handle, or the force sensor failed",
+                                    when, 100.0 * left / force),
+                        fmt::format("measure the part without it: {}", remedy)});
+    return;
   }
 }
 

@@ -51,7 +51,8 @@ inline constexpr Index kMinSamples = 20;
 void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::vector<Warning>& warnings);
 
 /// The force must not suddenly vanish while the motion continues, as when the hand leaves the handle: its standard
-/// deviation over a second falls below 10 % of the median before, for at least two seconds (or pulses).
+/// deviation over a second falls below 10 % of the median, for at least two seconds (or pulses), and the motion stays
+/// alike.
 void warn_of_lost_contact(const Clock& clock, const Signals& signals, const WindowPlan& plan,
                           std::vector<Warning>& warnings);
 
