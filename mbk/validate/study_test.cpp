@@ -53,6 +53,12 @@ TEST(Study, WithFewerRunsThanItNeedsSomeRowCannotBeMet) {
   EXPECT_GE(default_runs(studies().front()), 2000);  // coverage
 }
 
+TEST(Spatial, IntervalsOfThreeAxesHoldAndWhatIsWrongIsTold) {
+  const auto table = spatial_study({.runs = 30, .seed = 11});
+  expect_nothing_refuted(table);
+  EXPECT_GT(table->rows.size(), 50U);
+}
+
 TEST(Recovery, ARelaxedArmInTheClosedLoopIsFoundWithoutMuchBias) {
   const auto table = recovery_study({.runs = 20, .seed = 11});
   expect_nothing_refuted(table);
