@@ -550,7 +550,7 @@ Recording with_hand_away(double from, double to, double share) {
   return recording;
 }
 
-/// What is said of a lost contact; "" if nothing is.
+/// Message and advice of a lost contact; "" if there is no such warning.
 std::string said_of_contact(const Recording& recording) {
   const auto trial = prepared(recording);
   EXPECT_TRUE(trial) << trial.error().line();
