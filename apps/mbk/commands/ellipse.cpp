@@ -7,8 +7,8 @@
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/output.h"
 #include "mbk/files/contents/read_text.h"
+#include "mbk/measure/analyse/ellipses.h"
 #include "mbk/present/report/text.h"
-#include "mbk/present/request/stored_result.h"
 #include "mbk/present/result/json.h"
 
 namespace mbk::app {
@@ -32,7 +32,7 @@ int run(const EllipseArguments& arguments) {
   for (Identification& stored : *identifications) {
     Measurement& one = all.emplace_back();
     one.identification = std::move(stored);
-    if (auto ok = request::add_ellipses(one); !ok) return report_error(ok.error().in(arguments.file.string()));
+    if (auto ok = analyse::add_ellipses(one); !ok) return report_error(ok.error().in(arguments.file.string()));
     const Identification& identification = one.identification;
     if (!shown.empty()) shown += "\n";
     for (const SourceFile& source : identification.sources) shown += source.label() + "\n";

@@ -3,6 +3,7 @@
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/findings.h"
 #include "mbk/model/trial/identification.h"
+#include "mbk/model/trial/measurement.h"
 
 namespace mbk::analyse {
 
@@ -23,5 +24,8 @@ namespace mbk::analyse {
 
 /// The same for three axes.   @fails not three axes.
 [[nodiscard]] Result<SpatialFindings> analyse_ellipsoids(const Identification& identification);
+
+/// Ellipses or ellipsoids of a result.   @fails one axis.
+[[nodiscard]] Result<void> add_ellipses(Measurement& measured);
 
 }  // namespace mbk::analyse

@@ -455,13 +455,8 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     if (id == nullptr) continue;
     if (const auto fit = analyse::test_lines(spectra, trials, *id)) analyse::warn_of_lines(*fit, *id);
   }
-  if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
-    auto findings = MBK_TRY(analyse::analyse_ellipses(measured.identification));
-    measured.findings = std::move(findings);
-  }
-  if (measured.identification.axes == 3 && measured.identification.model.M.allFinite()) {
-    auto findings = MBK_TRY(analyse::analyse_ellipsoids(measured.identification));
-    measured.spatial = std::move(findings);
+  if (measured.identification.axes > 1 && measured.identification.model.M.allFinite()) {
+    MBK_TRY(analyse::add_ellipses(measured));
   }
   if (measured.identification.replicates) {
     auto bootstrap = MBK_TRY(analyse::bootstrap_findings(measured.identification));

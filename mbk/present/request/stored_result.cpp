@@ -46,18 +46,10 @@ Result<Measurement> restored(result::StoredResult stored) {
   }
   measured.identification = std::move(stored.identification);
   measured.alternative = std::move(stored.alternative);
-  if (measured.identification.axes > 1 && measured.identification.model.M.allFinite()) MBK_TRY(add_ellipses(measured));
-  return measured;
-}
-
-Result<void> add_ellipses(Measurement& measured) {
-  const Identification& id = measured.identification;
-  if (id.axes == 3) {
-    measured.spatial = MBK_TRY(analyse::analyse_ellipsoids(id));
-  } else {
-    measured.findings = MBK_TRY(analyse::analyse_ellipses(id));
+  if (measured.identification.axes > 1 && measured.identification.model.M.allFinite()) {
+    MBK_TRY(analyse::add_ellipses(measured));
   }
-  return {};
+  return measured;
 }
 
 }  // namespace mbk::request

@@ -24,10 +24,7 @@ using AskedBand = std::optional<std::pair<Hertz, Hertz>>;
 /// @fails  usage: no band is asked for, and the result holds neither one in which its models were judged nor energy.
 [[nodiscard]] Result<Passivity> passivity_of(const result::StoredResult& stored, const AskedBand& asked);
 
-/// As `measure` made it, as far as it was stored.   @fails  as passivity_of and add_ellipses
+/// As `measure` made it, as far as it was stored.   @fails  as passivity_of and analyse::add_ellipses
 [[nodiscard]] Result<Measurement> restored(result::StoredResult stored);
-
-/// Adds the ellipses of a result with two axes, or the ellipsoids of one with three.   @fails  one axis
-[[nodiscard]] Result<void> add_ellipses(Measurement& measured);
 
 }  // namespace mbk::request
