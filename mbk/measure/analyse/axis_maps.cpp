@@ -14,6 +14,7 @@
 
 #include "mbk/base/core/units.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/rotation.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/analyse/channel_cure.h"
 #include "mbk/model/impedance/ellipse.h"
@@ -359,31 +360,22 @@ std::optional<Symmetric> made_symmetric(const Identification& id, std::span<cons
   return std::nullopt;
 }
 
-Eigen::Matrix3d rotation_of(const Vector& turn) {
-  const double angle = turn.norm();
-  if (!(angle > 0.0)) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, Eigen::Vector3d(turn / angle)).toRotationMatrix();
-}
-
-/// In place of F, R(−θ) F; in space θ is a rotation vector.
+/// R(−θ) F instead of F; in space θ is a rotation vector.
 std::optional<Symmetric> turned_by(const Identification& id, std::span<const Index> parts) {
   if (id.axes == 3) {
     return made_symmetric(
         id, parts, Vector::Zero(3),
         [](const Vector& turn) {
-          const Eigen::Matrix3d D = rotation_of(turn).transpose();
+          const Eigen::Matrix3d D = numeric::rotation_matrix(turn).transpose();
           std::vector<Matrix> derivatives;
           for (Index k = 0; k < 3; ++k) {
-            Matrix change(3, 3);  // −e_k × each column
-            for (Index column = 0; column < 3; ++column) {
-              change.col(column) = -Eigen::Vector3d::Unit(k).cross(Eigen::Vector3d(D.col(column)));
-            }
-            derivatives.push_back(change);
+            derivatives.emplace_back(-numeric::cross_matrix(Eigen::Vector3d::Unit(k)) * D);
           }
           return std::pair(Matrix(D), derivatives);
         },
         [](const Vector& turn, const Vector& move) {
-          const Eigen::AngleAxisd both(Eigen::Matrix3d(rotation_of(turn) * rotation_of(move)));
+          const Eigen::AngleAxisd both(
+              Eigen::Matrix3d(numeric::rotation_matrix(turn) * numeric::rotation_matrix(move)));
           return Vector(both.angle() * both.axis());
         });
   }
@@ -399,7 +391,7 @@ std::optional<Symmetric> turned_by(const Identification& id, std::span<const Ind
       [](const Vector& angle, const Vector& move) { return Vector(angle + move); });
 }
 
-/// In place of F_y, F_y/g. Of two axes.
+/// F_y/g instead of F_y. Of two axes.
 std::optional<Symmetric> scaled_by(const Identification& id, std::span<const Index> parts) {
   if (id.axes != 2) return std::nullopt;
   return made_symmetric(

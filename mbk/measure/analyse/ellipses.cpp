@@ -244,12 +244,7 @@ CirculationFinding circulation_finding(const Matrix& Z, const Matrix& covariance
   CirculationFinding finding;
   finding.vector = impedance::antisymmetric_vector(Z);
   finding.size = finding.vector.norm();
-  Matrix to_vector = Matrix::Zero(3, 9);
-  for (Index k = 0; k < 3; ++k) {
-    const Index i = (k + 1) % 3, j = (k + 2) % 3;
-    to_vector(k, 3 * j + i) = 0.5;
-    to_vector(k, 3 * i + j) = -0.5;
-  }
+  const auto to_vector = impedance::antisymmetric_vector_gradient();
   const Matrix spread = to_vector * covariance * to_vector.transpose();
   for (Index k = 0; k < 3; ++k) {
     finding.vector95[static_cast<std::size_t>(k)] =
@@ -297,6 +292,16 @@ Result<SpatialFindings> analyse_ellipsoids(const Identification& identification)
                          ellipsoid_finding(model.K, block(2))};
   findings.antisymmetry = {circulation_finding(model.M, block(0)), circulation_finding(model.K, block(2))};
   return findings;
+}
+
+Result<void> add_ellipses(Measurement& measured) {
+  const Identification& id = measured.identification;
+  if (id.axes == 3) {
+    measured.spatial = MBK_TRY(analyse_ellipsoids(id));
+  } else {
+    measured.findings = MBK_TRY(analyse_ellipses(id));
+  }
+  return {};
 }
 
 }  // namespace mbk::analyse

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/base/numeric/rotation.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
@@ -19,20 +20,13 @@ Result<Recording> turn_force(const Recording& recording, const RotationVector& r
   if (x == result.channels.end() || y == result.channels.end()) {
     return bad_data("only a force with two axes can be rotated", "omit --force-rotation-deg, or name both axes");
   }
-  const double angle = rotation[2], c = std::cos(angle), s = std::sin(angle);
   if (rotation[0] != 0.0 || rotation[1] != 0.0) {
     const auto z = channel(2);
     if (z == result.channels.end()) {
       return bad_data("only a force with three axes can be rotated about x or y",
                       "pass --force-rotation-deg with one angle, from x to y, or name force_z");
     }
-    Eigen::Vector3d k(rotation[0], rotation[1], rotation[2]);
-    const double theta = k.norm();
-    k /= theta;
-    Eigen::Matrix3d cross;  // k × F
-    cross << 0.0, -k[2], k[1], k[2], 0.0, -k[0], -k[1], k[0], 0.0;
-    const Eigen::Matrix3d R =
-        Eigen::Matrix3d::Identity() + std::sin(theta) * cross + (1.0 - std::cos(theta)) * cross * cross;
+    const Eigen::Matrix3d R = numeric::rotation_matrix(Eigen::Vector3d(rotation[0], rotation[1], rotation[2]));
     for (Index i = 0; i < x->values.size(); ++i) {
       const Eigen::Vector3d F = R * Eigen::Vector3d(x->values[i], y->values[i], z->values[i]);
       x->values[i] = F[0];
@@ -41,6 +35,7 @@ Result<Recording> turn_force(const Recording& recording, const RotationVector& r
     }
     return result;
   }
+  const double c = std::cos(rotation[2]), s = std::sin(rotation[2]);
   const Vector turned = c * x->values - s * y->values;
   y->values = s * x->values + c * y->values;
   x->values = turned;

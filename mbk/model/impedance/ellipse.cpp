@@ -18,6 +18,16 @@ Eigen::Vector3d antisymmetric_vector(const Matrix& Z) {
   return 0.5 * Eigen::Vector3d(Z(2, 1) - Z(1, 2), Z(0, 2) - Z(2, 0), Z(1, 0) - Z(0, 1));
 }
 
+Eigen::Matrix<double, 3, 9> antisymmetric_vector_gradient() {
+  Eigen::Matrix<double, 3, 9> gradient = Eigen::Matrix<double, 3, 9>::Zero();
+  for (Index k = 0; k < 3; ++k) {
+    const Index i = (k + 1) % 3, j = (k + 2) % 3;  // (z_ji − z_ij)/2
+    gradient(k, 3 * j + i) = 0.5;
+    gradient(k, 3 * i + j) = -0.5;
+  }
+  return gradient;
+}
+
 double antisymmetry_percent(const Matrix& Z) {
   const Ellipse e = ellipse(Z);
   if (!(e.lambda_min > 0.0)) return std::numeric_limits<double>::quiet_NaN();

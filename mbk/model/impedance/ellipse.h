@@ -16,6 +16,9 @@ namespace mbk::impedance {
 /// only its z component is left, with the opposite sign of antisymmetric_part.
 [[nodiscard]] Eigen::Vector3d antisymmetric_vector(const Matrix& Z);
 
+/// Its derivative by the elements of Z, row by row.
+[[nodiscard]] Eigen::Matrix<double, 3, 9> antisymmetric_vector_gradient();
+
 /// z_mean = 100 |z_a|/√(λ_max λ_min) [%], relative to the symmetric part (Dyck 2013, eq. 3.26).
 /// NaN where the symmetric part is not positive definite. @param Z 2×2
 [[nodiscard]] double antisymmetry_percent(const Matrix& Z);

@@ -7,6 +7,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/rotation.h"
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::impedance {
@@ -46,13 +47,9 @@ struct Circulation {
       : a(omega * antisymmetric_vector(model.M) - antisymmetric_vector(model.K) / omega),
         gradient(Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, no_gradient(model).size())) {
     constexpr Index kM = 0, kK = 18;
-    for (const auto& [first, factor] : {std::pair(kM, 0.5 * omega), std::pair(kK, -0.5 / omega)}) {
-      for (Index k = 0; k < 3; ++k) {
-        const Index i = (k + 1) % 3, j = (k + 2) % 3;  // a_k = (z_ji − z_ij)/2
-        gradient(k, first + 3 * j + i) = factor;
-        gradient(k, first + 3 * i + j) = -factor;
-      }
-    }
+    const auto of_matrix = antisymmetric_vector_gradient();
+    gradient.middleCols<9>(kM) = omega * of_matrix;
+    gradient.middleCols<9>(kK) = -of_matrix / omega;
   }
 };
 
@@ -61,11 +58,8 @@ constexpr Index kDampingInSpace = 9;  ///< of b_xx in the stacked model of three
 /// The smallest eigenvalue of B_s + j [a]×.
 Sensitive index_in_space(const Model& model, double omega) {
   const Circulation circulation(model, omega);
-  const Eigen::Vector3d& a = circulation.a;
-  Eigen::Matrix3d cross;
-  cross << 0.0, -a[2], a[1], a[2], 0.0, -a[0], -a[1], a[0], 0.0;
   Eigen::Matrix3cd H = symmetric_part(model.B).cast<std::complex<double>>();
-  H.imag() = cross;
+  H.imag() = numeric::cross_matrix(circulation.a);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3cd> eigen(H);
   const Eigen::Vector3cd v = eigen.eigenvectors().col(0);
   Sensitive index{eigen.eigenvalues()[0], no_gradient(model)};
