@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,14 +12,15 @@
 #include "mbk/base/core/units.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
+#include "mbk/base/numeric/rotation.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/impedance/model.h"
 #include "mbk/model/impedance/passivity_index.h"
 #include "mbk/model/perturbation/multisine.h"
-#include "mbk/model/trial/quantity_channels.h"
-#include "mbk/simulate/laboratory/noise.h"
+#include "mbk/model/perturbation/schedule.h"
+#include "mbk/simulate/laboratory/prescribed_motion.h"
 #include "mbk/validate/each_run.h"
 #include "mbk/validate/rows.h"
 #include "mbk/validate/seeded_runs.h"
@@ -29,12 +29,11 @@
 namespace mbk::validation {
 namespace spatial {
 
-constexpr double kRate = 1000.0;           ///< [Hz]
-constexpr double kPeriod = 10.0;           ///< of the multisines [s]
-constexpr double kForceNoise = 0.3;        ///< low-passed at 1.5 Hz, standard deviation [N]
-constexpr double kSensorNoise = 0.02;      ///< white, standard deviation [N]
-constexpr double kPositionQuantum = 2e-6;  ///< [m]
-constexpr std::uint32_t kPhases = 10, kColoured = 30, kWhite = 20, kOther = 40;
+constexpr double kRate = 1000.0;     ///< [Hz]
+constexpr double kPeriod = 10.0;     ///< of the multisines [s]
+constexpr double kForceNoise = 0.3;  ///< low-passed at 1.5 Hz, standard deviation [N]
+constexpr double kMovingIn = 2.0;    ///< [s]
+constexpr std::uint32_t kPhases = 10, kOther = 60;
 
 /// A relaxed arm in space: the planar one of Dyck (2013) with a third axis that is coupled to it. Made up, as no
 /// published 3×3 model has intervals.
@@ -74,50 +73,24 @@ Result<std::vector<perturbation::Multisine>> sines(const Trial& trial) {
   return axes;
 }
 
-Eigen::Matrix3d rotation(const Eigen::Vector3d& turn) {
-  const double angle = turn.norm();
-  return angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
-}
-
 Result<Recording> record(const Trial& trial) {
-  const auto axes = MBK_TRY(sines(trial));
-  const auto samples = static_cast<Index>(std::llround(trial.duration * kRate));
-  Matrix position(samples, 3), force(samples, 3);
+  using perturbation::AxesVector;
+  auto axes = MBK_TRY(sines(trial));
+  auto schedule = MBK_TRY(perturbation::Schedule::multisine(std::move(axes), perturbation::Quantity::position,
+                                                            perturbation::Space::hand, trial.duration, kMovingIn));
+  const laboratory::PrescribedMotion motion(trial.limb.x0, std::move(schedule));
+  laboratory::PrescribedMotionSensors sensors;
+  sensors.coloured_force_noise = trial.noise;
   const Eigen::Matrix3d M = trial.limb.M, B = trial.limb.B, K = trial.limb.K;
   const Eigen::Vector3d x0 = trial.limb.x0;
-  Recording recording;
-  recording.time.resize(samples);
-  for (Index i = 0; i < samples; ++i) {
-    const double t = static_cast<double>(i) / kRate;
-    Eigen::Vector3d x = x0, v, a;
-    for (Index axis = 0; axis < 3; ++axis) {
-      const auto jet = axes[static_cast<std::size_t>(axis)].at(t);
-      x[axis] += jet.value;
-      v[axis] = jet.first;
-      a[axis] = jet.second;
-    }
-    recording.time[i] = t;
-    position.row(i) = x.transpose();
+  double t = 0.0;  // the samples come in order
+  const auto force = [&](const perturbation::Jet<AxesVector>& x) -> AxesVector {
     const double wrist = trial.wrist * std::sin(2.0 * std::numbers::pi * t / 20.0);
-    const Eigen::Vector3d turn = trial.turned + wrist * Eigen::Vector3d::UnitX();
-    force.row(i) = -(rotation(turn) * (M * a + B * v + K * (x - x0))).transpose();
-  }
-  for (const QuantityChannels& quantity : {kPositionChannels, kForceChannels, kReferenceChannels}) {
-    const bool is_force = quantity.one_axis == kForceChannels.one_axis;
-    for (Index axis = 0; axis < 3; ++axis) {
-      const auto stream = static_cast<std::uint32_t>(axis);
-      laboratory::ColouredNoise coloured(is_force ? trial.noise : 0.0, Hertz(1.5), 1.0 / kRate,
-                                         numeric::Random(trial.seed, kColoured + stream));
-      laboratory::WhiteNoise white(is_force ? kSensorNoise : 0.0, numeric::Random(trial.seed, kWhite + stream));
-      Vector values = is_force ? force.col(axis) : position.col(axis);
-      for (double& value : values) {
-        value =
-            is_force ? value + coloured.next() + white.next() : kPositionQuantum * std::round(value / kPositionQuantum);
-      }
-      recording.channels.push_back({quantity.name(3, axis), quantity.unit, quantity.frame, std::move(values)});
-    }
-  }
-  return recording;
+    t += 1.0 / kRate;
+    return -(numeric::rotation_matrix(trial.turned + wrist * Eigen::Vector3d::UnitX()) *
+             (M * x.second + B * x.first + K * (x.value - x0)));
+  };
+  return laboratory::record(motion, force, sensors, trial.seed, Hertz(kRate));
 }
 
 Result<Measurement> measured(const Trial& trial, std::optional<std::pair<Hertz, Hertz>> band = std::nullopt) {
@@ -176,9 +149,7 @@ Trial active_trial(std::uint64_t seed, Hertz low) {
   const Eigen::Matrix3d B = trial.limb.B;
   const double edge = std::sqrt(B.determinant() / u.dot(B * u));
   const Eigen::Vector3d k = 1.0001 * edge * 2.0 * std::numbers::pi * low.value * u;
-  Matrix cross(3, 3);
-  cross << 0.0, -k[2], k[1], k[2], 0.0, -k[0], -k[1], k[0], 0.0;
-  trial.limb.K += cross;
+  trial.limb.K += numeric::cross_matrix(k);
   return trial;
 }
 
