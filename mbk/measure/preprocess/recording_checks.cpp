@@ -269,7 +269,10 @@ void warn_of_lost_contact(const Clock& clock, const Signals& signals, const Wind
     return levels.size() < kShows ? 0.0 : numeric::median(levels);
   };
   const double of_all = usual(blocks.size(), &Activity::force);
+  double strongest = 0.0;
+  for (const Activity& one : blocks) strongest = std::max(strongest, one.force);
   for (std::size_t k = 0; k + kLasts <= blocks.size(); ++k) {
+    if (!(blocks[k].force < kGone * strongest)) continue;  // whatever is usual
     // Of the blocks before, or of all, where the hand was away first.
     const bool by_before = usual(k, &Activity::force) >= of_all;
     const std::size_t count = by_before ? k : blocks.size();
@@ -285,10 +288,10 @@ void warn_of_lost_contact(const Clock& clock, const Signals& signals, const Wind
     const bool sudden =
         (k > 0 && (is_there(k - 1) || (k > 1 && is_there(k - 2)))) || is_there(end) || is_there(end + 1);
     if (end - k < kLasts || !sudden) continue;
-    const bool at_first = k == 0, comes_back = end < blocks.size();
+    const bool comes_back = end < blocks.size();
     const double first = clock.seconds(blocks.front().begin), last = clock.seconds(blocks.back().end);
     const double gone = clock.seconds(blocks[k].begin), back = comes_back ? clock.seconds(blocks[end].begin) : last;
-    const double before = at_first ? 0.0 : clock.seconds(blocks[k - 1].begin) - first, after = last - back;
+    const double before = k == 0 ? 0.0 : clock.seconds(blocks[k - 1].begin) - first, after = last - back;
     const std::string when =
         !comes_back ? fmt::format("from {:.3g} s on", gone) : fmt::format("from {:.3g} s to {:.3g} s", gone, back);
     const std::string remedy =
