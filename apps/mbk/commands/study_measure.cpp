@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,20 +37,24 @@ std::string name_of(const store::StoredRecording& r) {
                      r.condition.empty() ? "" : r.condition + ", ", r.trial);
 }
 
-/// The same of a unit; the name of its stored file if the study does not know it.
-std::string name_of(const store::Store& study, const store::Unit& unit) {
-  const auto recordings = study.recordings();
-  if (!recordings) return unit.file;
-  const auto is_unit = [&](const store::StoredRecording& r) { return r.sha256 == unit.sha256 && r.part == unit.part; };
-  const auto found = std::ranges::find_if(*recordings, is_unit);
-  return found == recordings->end() ? unit.file : name_of(*found);
+/// Units under these names; none if the study cannot be read.
+std::map<store::Unit, std::string> names_of(const store::Store& study) {
+  std::map<store::Unit, std::string> names;
+  if (const auto recordings = study.recordings()) {
+    for (const store::StoredRecording& r : *recordings) names[{r.sha256, r.part, ""}] = name_of(r);
+  }
+  return names;
 }
 
 workflow::MeasureListener listener_of(const store::Store& study, const StudyMeasureArguments& arguments,
                                       Progress& progress, NotUsable& not_usable) {
   return {
       arguments.study.role, [&](int done, int of) { progress.count(done, of); },
-      [&](const store::Unit& unit, const std::string& why) { say("mbk: {}: {}\n", name_of(study, unit), why); },
+      [&study, names = std::map<store::Unit, std::string>()](const store::Unit& unit, const std::string& why) mutable {
+        if (names.empty()) names = names_of(study);
+        const auto found = names.find(unit);
+        say("mbk: {}: {}\n", found == names.end() ? unit.file : found->second, why);
+      },
       [&](const store::Unit& unit, const std::string& codes) { not_usable[unit] = codes.substr(0, codes.find(',')); },
       [](const Error& error) { std::ignore = report_error(error); }};
 }
