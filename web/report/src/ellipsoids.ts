@@ -1,19 +1,12 @@
 // Ellipsoids of a result with three axes: drawings, principal values, volume and antisymmetric part.
-import type { Value } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
 import { anyDirection, directionText, ellipsoidDrawings, ellipsoidsBesideEachOther, eyeWords, type Ellipsoid, noEllipsoid } from "@mbk/shared/ellipsoids";
-import { data, significant, withInterval } from "@mbk/shared/format";
+import { data, significant, valueWithInterval, withInterval } from "@mbk/shared/format";
 import { matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { csvOf } from "@mbk/shared/sheet";
 import { fileOf } from "./data";
 import { threeDigits } from "./passivity";
 import { saveable } from "./picture";
-
-/** "412 [390, 434]" */
-export const valueWithInterval = (value: Value, [low, high]: [Value, Value], name: string): HTMLElement =>
-  h("span", { class: "number" }, data(value, significant(value), name),
-    low === null || high === null ? "" : h("wbr"),
-    low === null || high === null ? "" : h("span", { class: "half" }, " [", data(low, significant(low), `${name}-low`), ", ", data(high, significant(high), `${name}-high`), "]"));
 
 export const cubed = (unit: string): string => `${/[·/]/.test(unit) ? `(${unit})` : unit}³`;
 

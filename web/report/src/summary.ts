@@ -4,11 +4,11 @@ import type { Method, Model, Value, Warning, WarningCode } from "@mbk/shared/doc
 import { h, heading, type HeadingLevel, svg } from "@mbk/shared/dom";
 import { anyAngle, ellipseOf } from "@mbk/shared/ellipses";
 import { directionText, eigenAxes, ellipsoidDrawings, type Principal, symmetricPart } from "@mbk/shared/ellipsoids";
-import { data, fixed, listed, significant, withHalfWidth } from "@mbk/shared/format";
+import { data, fixed, listed, significant, valueWithInterval, withHalfWidth } from "@mbk/shared/format";
 import { axisNames, type MatrixName, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
 import { fileOf } from "./data";
-import { valueWithInterval, volumeOf } from "./ellipsoids";
+import { volumeOf } from "./ellipsoids";
 import { literatureLine } from "./literature";
 import { meanings, methodNames } from "./words";
 

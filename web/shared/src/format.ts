@@ -61,27 +61,21 @@ export function withHalfWidth(value: Value, standardError: Value, name: string, 
   );
 }
 
-/** 98.7 [92.5, 104.9] */
-export function withInterval(value: Value, interval: [Value, Value], name: string, decimals: number): HTMLElement {
-  const [low, high] = interval;
+/** "98.7 [92.5, 104.9]", each number as `shown`, to three digits unless told otherwise. */
+export function valueWithInterval(value: Value, [low, high]: [Value, Value], name: string, shown: (number: Value) => string = significant): HTMLElement {
+  const known = low !== null && high !== null;
   return h(
     "span",
     { class: "number" },
-    data(value, fixed(value, decimals), name),
-    low === null || high === null ? "" : h("wbr"),
-    low === null || high === null
-      ? ""
-      : h(
-          "span",
-          { class: "half" },
-          " [",
-          data(low, fixed(low, decimals), `${name}-low`),
-          ", ",
-          data(high, fixed(high, decimals), `${name}-high`),
-          "]",
-        ),
+    data(value, shown(value), name),
+    known ? h("wbr") : "",
+    known ? h("span", { class: "half" }, " [", data(low, shown(low), `${name}-low`), ", ", data(high, shown(high), `${name}-high`), "]") : "",
   );
 }
+
+/** 98.7 [92.5, 104.9] */
+export const withInterval = (value: Value, interval: [Value, Value], name: string, decimals: number): HTMLElement =>
+  valueWithInterval(value, interval, name, (number) => fixed(number, decimals));
 
 /** "x 77.3 %, y 88.5 %"; with one axis "77.3 %" */
 export function perAxis(values: Value[], decimals: number, unit: string, name: string): HTMLElement {
