@@ -7,7 +7,7 @@ out=${1:-$(mktemp --directory)}
 mkdir -p "$out"
 here=$(dirname "${BASH_SOURCE[0]}")
 
-# 1. A synthetic log in place of yours, with the columns of libfranka: time [ms], O_T_EE, O_F_ext_hat_K.
+# 1. A synthetic log instead of yours, with the columns of libfranka: time [ms], O_T_EE, O_F_ext_hat_K.
 python3 "$here/franka_log.py" "$out/log.csv"
 
 # 2. What mbk reads: x, y, z [m] and the force of the hand on the robot [N], which is -O_F_ext_hat_K.

@@ -119,12 +119,13 @@ bool is_pdf(const std::filesystem::path& report) {
 }
 
 Result<void> check_report_format(const std::filesystem::path& report) {
-  if (is_pdf(report)) MBK_TRY(chart_format::browser());
-  const std::string extension = report.extension().string();
-  if (!is_pdf(report) && extension != ".html" && extension != ".htm") {
-    return bad_usage("a report is an HTML or a PDF file", "choose a name that ends in .html or .pdf");
+  if (is_pdf(report)) {
+    MBK_TRY(chart_format::browser());
+    return {};
   }
-  return {};
+  const std::string extension = report.extension().string();
+  if (extension == ".html" || extension == ".htm") return {};
+  return bad_usage("a report is an HTML or a PDF file", "choose a name that ends in .html or .pdf");
 }
 
 Result<std::string> page_as_pdf(const std::string& html) {

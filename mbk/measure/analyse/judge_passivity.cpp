@@ -238,8 +238,7 @@ std::string predicted(const ModelPassivity& model, const PassivityPrediction& pr
   if (model.symmetric == Verdict::passive && uncertain.empty()) {
     return fmt::format(
         "{} {} absorbs energy in straight motion; circular motion is not tested, because the structure imposes "
-        "symmetric "
-        "M and K",
+        "symmetric M and K",
         band, subject);
   }
   return fmt::format("{} {} {}: {}", band, subject,
@@ -342,7 +341,7 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   }
   if (id.axes > 1) {
     result.antisymmetric = common_verdict(std::span(result.conditions).subspan(kSymmetricConditions));
-    // Symmetry that was imposed, not found, says nothing of circular motion.
+    // Circular motion is not tested if symmetry was imposed.
     if (id.structure == Structure::symmetric && result.antisymmetric == Verdict::passive) {
       result.antisymmetric = Verdict::undecided;
     }

@@ -162,7 +162,7 @@ PaperCell number_cell(double value, double half) {
   return {with_interval(value, half), PaperCell::Kind::number};
 }
 
-/// Parameters of a model that stand in one table, in the order of impedance::stacked.
+/// Parameters of a model of one table, in the order of impedance::stacked.
 struct Part {
   Index first, count;
 };
