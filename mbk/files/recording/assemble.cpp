@@ -22,6 +22,7 @@
 #include "mbk/files/recording/one_clock.h"
 #include "mbk/files/recording/own_samples.h"
 #include "mbk/files/recording/robot_logs.h"
+#include "mbk/files/recording/sensor_orientation.h"
 #include "mbk/files/recording/slices.h"
 #include "mbk/files/recording/time_names.h"
 
@@ -224,6 +225,7 @@ class Assembler {
       MBK_TRY(check_unit_of_time(recording_, options_.rate || states_time_));
     }
     find_updates(recording_);
+    MBK_TRY(turn_force_to_base(recording_));
     return options_.own_samples ? at_own_samples(std::move(recording_), options_.commands) : std::move(recording_);
   }
 
@@ -610,7 +612,19 @@ class Assembler {
       if (!signal.is_plain()) note_arithmetic(signal);
       signals_.push_back(std::move(signal));
     }
+    note_half_of_third_axis();
     return find_time();
+  }
+
+  /// The third axis needs its position and its force; with one of them, the plane is measured.
+  void note_half_of_third_axis() {
+    const auto names = [&](const char* name) {
+      return std::ranges::any_of(signals_, [&](const Signal& signal) { return signal.kind->name == name; });
+    };
+    const bool z = names("hand_z");
+    if (z == names("force_z") || options_.axes == 2 || names("sensor_qw")) return;
+    recording_.notes.push_back(fmt::format("{} alone is no third axis: --channels names no {}; the plane xy is read",
+                                           z ? "z" : "Fz", z ? "Fz" : "z"));
   }
 
   /// A force or a torque.

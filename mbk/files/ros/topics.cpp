@@ -441,9 +441,13 @@ void Topics::doubt(const std::vector<std::pair<Topic*, Stream*>>& streams) {
         const std::string source = fmt::format("{}.{}", stream->name, vector->path);
         stream->doubt = fmt::format(
             "it is in {}, but the position of '{}' is in {}; transform it to that frame before recording (tf2) or, if "
-            "the axes of both frames are parallel, name it, as in --channels x=hand_x,y=hand_y,{}x={}.x,{}y={}.y",
+            "the axes of both frames are parallel, name it, as in --channels x=hand_x,y=hand_y,{}x={}.x,{}y={}.y{}",
             frames_text(frames), hand->name, frames_text(of_hands), vector->channel == "force" ? 'F' : 'a', source,
-            vector->channel == "force" ? 'F' : 'a', source);
+            vector->channel == "force" ? 'F' : 'a', source,
+            vector->channel == "force"
+                ? "; if they are not parallel, name Fz too, and the recorded orientation of the force's frame as "
+                  "sensor_qx, sensor_qy, sensor_qz and sensor_qw"
+                : "");
       }
     }
   }
