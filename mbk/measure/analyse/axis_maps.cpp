@@ -37,6 +37,7 @@ constexpr double kAsymmetricInSpace = 25.9;  ///< χ² of the antisymmetric vect
 /// χ² of the antisymmetric parts of B and K, or of K alone, that one parameter leaves, 0.1 % by chance.
 constexpr double kAgreeOfThree = 13.8, kAgreeOfTwo = 10.8;
 constexpr double kAgreeOfThreeInSpace = 22.5, kAgreeOfTwoInSpace = 16.3;  ///< the same after a rotation in space
+constexpr double kGainsOfThreeInSpace = 24.3, kGainsOfTwoInSpace = 18.5;  ///< the same after two gains
 
 /// F = R·(F as read), R a signed permutation: row i takes `from[i]` with `sign[i]`.
 struct AxisMap {
@@ -310,6 +311,9 @@ std::string turn_back(const Vector& angle) {
 struct Symmetric {
   Vector value, standard_error;
   double misfit = 0;  ///< χ² of the antisymmetric parts that are left
+
+  /// Akaike's: smaller is better.
+  [[nodiscard]] double criterion() const { return misfit + 2.0 * static_cast<double>(value.size()); }
 };
 
 /// D(p) Z symmetric for each Z of M, B and K: minimises aᵀ V⁻¹ a over p, a of the antisymmetric parts and V their
@@ -391,18 +395,32 @@ std::optional<Symmetric> turned_by(const Identification& id, std::span<const Ind
       [](const Vector& angle, const Vector& move) { return Vector(angle + move); });
 }
 
-/// F_y/g instead of F_y. Of two axes.
+/// F_y/g_y instead of F_y, and so on: gains relative to that of F_x.
 std::optional<Symmetric> scaled_by(const Identification& id, std::span<const Index> parts) {
-  if (id.axes != 2) return std::nullopt;
+  const Index n = id.axes;
   return made_symmetric(
-      id, parts, Vector::Ones(1),
-      [](const Vector& gain) {
-        Matrix scale = Matrix::Identity(2, 2), derivative = Matrix::Zero(2, 2);
-        scale(1, 1) = 1.0 / gain[0];
-        derivative(1, 1) = -1.0 / (gain[0] * gain[0]);
-        return std::pair(scale, std::vector{derivative});
+      id, parts, Vector::Ones(n - 1),
+      [n](const Vector& gain) {
+        Matrix scale = Matrix::Identity(n, n);
+        std::vector<Matrix> derivatives;
+        for (Index axis = 1; axis < n; ++axis) {
+          const double one = gain[axis - 1];
+          scale(axis, axis) = 1.0 / one;
+          derivatives.emplace_back(Matrix::Zero(n, n)).coeffRef(axis, axis) = -1.0 / (one * one);
+        }
+        return std::pair(scale, derivatives);
       },
       [](const Vector& gain, const Vector& move) { return Vector(gain + move); });
+}
+
+/// "Fy were 1.2 ± 0.1 times too large relative to Fx"
+std::string gains_text(const Symmetric& scale) {
+  std::string text;
+  for (Index axis = 0; axis < scale.value.size(); ++axis) {
+    text += fmt::format("{}F{} were {:.3g} ± {:.2g}", axis > 0 ? " and " : "", "yz"[axis], scale.value[axis],
+                        numeric::kNormal95 * scale.standard_error[axis]);
+  }
+  return text + " times too large relative to Fx";
 }
 
 /// Whether a limb that is no M, B and K biases the inertia, too.
@@ -545,13 +563,14 @@ std::optional<Warning> check_symmetry(const Measurement& measured) {
   std::optional<Symmetric> turn = turned_by(id, parts);
   const auto scale = scaled_by(id, parts);
   const bool turn_fits = turn && turn->misfit < agree;
+  const double agree_scaled = !in_space ? agree : damped ? kGainsOfThreeInSpace : kGainsOfTwoInSpace;
   const std::string what = asymmetry_text(asymmetry, id.model.M);
-  if (!turn_fits && scale && scale->misfit < agree && scale->value[0] > 0.0) {
+  const bool scale_fits = scale && scale->misfit < agree_scaled && scale->value.minCoeff() > 0.0;
+  if (scale_fits && (!turn_fits || scale->criterion() < turn->criterion())) {
     return Warning{
         WarningCode::inertia_not_symmetric,
-        fmt::format("{}; M, B and K would be symmetric if Fy were {:.3g} ± {:.2g} times too large relative to Fx", what,
-                    scale->value[0], numeric::kNormal95 * scale->standard_error[0]),
-        "check the gain of both force axes with 'mbk sensor calibrate'"};
+        fmt::format("{}; M, B and K would be symmetric if {}", what, gains_text(*scale)),
+        fmt::format("check the gain of {} force axes with 'mbk sensor calibrate'", in_space ? "all" : "both")};
   }
   if (!turn_fits && biased(id)) return std::nullopt;  // the cause of the bias is reported already
   if (!turn_fits) turn = turned_by(id, kInertia);
@@ -569,7 +588,8 @@ std::optional<Warning> check_symmetry(const Measurement& measured) {
                 : fmt::format("{}: according to M alone the force is rotated {} relative to the motion, but B and K "
                               "contradict this: gains, crosstalk or reflexes may be the cause",
                               what, rotated),
-      turn_back(angle)};
+      (turn_fits ? "" : "check the gains and the crosstalk of the force with 'mbk sensor calibrate'; ") +
+          turn_back(angle)};
 }
 
 }  // namespace mbk::analyse

@@ -22,9 +22,9 @@ namespace mbk::analyse {
 /// Checks whether the inertia is symmetric, as for every limb: not if |m_yx − m_xy| exceeds 4.4 standard errors
 /// (p = 10⁻⁵), with both methods if both are usable. The angle θ by which the force is rotated relative to the motion
 /// makes R(−θ)(M + Λ I), R(−θ) B and R(−θ) K symmetric, Λ the handle's mass: by generalised least squares over the
-/// three, or over M alone where the three contradict each other (a reflex may make B and K antisymmetric). If a
-/// gain of one axis explains M, B and K but an angle does not, the gain is named; if neither does and another warning
-/// already reports a biased M, there is no warning.
+/// three, or over M alone where the three contradict each other (a reflex may make B and K antisymmetric). If the
+/// gains of the axes explain M, B and K and an angle does not, or less well (Akaike's criterion), the gains are named;
+/// if neither does and another warning already reports a biased M, there is no warning.
 [[nodiscard]] std::optional<Warning> check_symmetry(const Measurement& measured);
 
 }  // namespace mbk::analyse

@@ -181,6 +181,19 @@ TEST(Symmetry, NamesTheRotationVectorOfAForceThatIsTurnedInSpace) {
   EXPECT_FALSE(check_symmetry(measured(Matrix::Identity(3, 3), relaxed_arm_in_space(), 0.003)));
 }
 
+TEST(Symmetry, NamesTheGainOfAForceAxis) {
+  for (const double gain : {0.6, 1.5}) {
+    const auto in_plane = check_symmetry(measured(Matrix(Vector{{1.0, gain}}.asDiagonal()), relaxed_arm(), 0.005));
+    ASSERT_TRUE(in_plane) << gain;
+    EXPECT_NE(in_plane->message.find(fmt::format("Fy were {:.3g} ±", gain)), std::string::npos) << in_plane->message;
+    const auto in_space =
+        check_symmetry(measured(Matrix(Vector{{1.0, 1.0, gain}}.asDiagonal()), relaxed_arm_in_space(), 0.001));
+    ASSERT_TRUE(in_space) << gain;
+    EXPECT_NE(in_space->message.find("Fy were 1 ±"), std::string::npos) << in_space->message;
+    EXPECT_NE(in_space->message.find(fmt::format("Fz were {:.3g} ±", gain)), std::string::npos) << in_space->message;
+  }
+}
+
 TEST(AxisMaps, AForceThatIsTurnedInSpaceIsNamedByItsAngleAndAxis) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 2.0, -1.0).normalized();
   const Matrix turn = Eigen::AngleAxisd(0.6, axis).toRotationMatrix();
