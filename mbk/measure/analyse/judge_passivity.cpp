@@ -170,7 +170,10 @@ std::string conditions_with(const ModelPassivity& model, Verdict verdict) {
     if (c.verdict != verdict) continue;
     text += fmt::format("{}{} is {:.3g} {}", text.empty() ? "" : "; ", c.name, c.value, c.unit);
     const auto [low, high] = numeric::interval95(c.value, c.standard_error);
-    if (std::isfinite(low)) text += fmt::format(" (95 %: {:.3g} to {:.3g})", low, high);
+    if (!std::isfinite(low)) continue;
+    const bool stricter = verdict == Verdict::undecided && high < 0.0;
+    text += fmt::format(" (95 %: {:.3g} to {:.3g}{})", low, high,
+                        stricter ? fmt::format("; for all conditions at once up to {:.3g}", c.upper) : "");
   }
   return text;
 }
