@@ -481,11 +481,10 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
   if (count == 0)
     return bad_data(fmt::format("there are no two consecutive periods of {:g} s", period_s), "record longer");
   if (count < sizes.inputs) {
-    return bad_data(
-        fmt::format("{} trial{} cannot separate {} inputs, because all are perturbed at the same frequencies",
-                    count == 1 ? std::string("one") : fmt::format("{}", count), count == 1 ? "" : "s",
-                    sizes.inputs == 2 ? std::string("the two") : fmt::format("{}", sizes.inputs)),
-        "record several trials with different phases, or use --method welch or local-polynomial");
+    return bad_data(fmt::format("{} trial{} cannot separate {} inputs at one frequency",
+                                count == 1 ? std::string("one") : fmt::format("{}", count), count == 1 ? "" : "s",
+                                sizes.inputs == 2 ? std::string("the two") : fmt::format("{}", sizes.inputs)),
+                    "record several trials with different phases, or use --method welch or local-polynomial");
   }
   PeriodicFacts facts;
   facts.period_s = period_s;

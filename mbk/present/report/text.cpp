@@ -87,9 +87,11 @@ std::string how_made(const Identification& id) {
   const bool metres = id.motion == Motion::translation;
   std::string motion =
       fmt::format("{:.3g} {} rms", metres ? 1e3 * e.motion : e.motion, metres ? "mm" : units_of(id.motion).position);
-  if (id.axes == 2)
-    motion += fmt::format(", {:.0f} % of it perpendicular to the main direction", 100.0 * e.motion_ratio);
-  if (id.axes == 3) motion += fmt::format(", {:.0f} % of it in the direction of least motion", 100.0 * e.motion_ratio);
+  if (id.axes > 1) {
+    motion += fmt::format(
+        ", {:.0f} % as much {}", 100.0 * e.motion_ratio,
+        id.axes == 2 ? "across the main direction as along it" : "in the weakest direction as in the strongest");
+  }
   rows.push_back({"motion", motion + fmt::format("; condition number {}", significant(e.condition, 2))});
   if (id.handle_mass > 0.0) {
     const bool recorded = id.handle_mass_from == HandleMassSource::recording;
@@ -290,7 +292,9 @@ std::string ellipsoids_text(const SpatialFindings& findings) {
     const CirculationFinding& a = findings.antisymmetry[k == 0 ? 0 : 1];
     circulations.push_back({kMatrixNames[k], fmt::format("{} {}", with_range(a.size, a.size95), unit[k]),
                             std::isfinite(a.percent) ? fmt::format("{:.1f} %", a.percent) : "undefined",
-                            a.significant ? direction_text(a.vector.normalized()) : "not significant (95 %)"});
+                            a.significant  ? direction_text(a.vector.normalized())
+                            : a.size > 0.0 ? "not significant (95 %)"
+                                           : "imposed by the structure"});
   }
   return table(axes) + "\n" + table(sizes) + "\n" + table(circulations) +
          paragraph("  ",

@@ -171,7 +171,7 @@ export function provenanceSection(trial: Trial, id: string, level: HeadingLevel)
       ["Data used for the parameters", `${plain(e.duration_s, 4)} s, ${e.samples} samples (${e.parameters_from})`],
       ["Noise correlation time", `${plain(e.hac_lag_s, 3)} s, allowed for in the standard errors`],
       ["Handle mass subtracted", e.handle_mass_kg ? `${plain(e.handle_mass_kg)} kg` : "none"],
-      ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes > 1 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % of it ${result.axes === 2 ? "perpendicular to the main direction" : "along the direction that moved least"}` : ""}`],
+      ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes > 1 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % as much ${result.axes === 2 ? "across the main direction as along it" : "in the weakest direction as in the strongest"}` : ""}`],
       ["Condition number", `${significant(x.condition, 2)}, rank ${x.rank}`],
       ["Refitted at a lower sample rate", result.decimate_check ? `at ${plain(result.decimate_check.rate_hz)} Hz the model differs by ${significant(percent(result.decimate_check.largest_relative_change), 2)} %` : undefined],
     ]),
