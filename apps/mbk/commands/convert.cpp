@@ -197,6 +197,7 @@ Action add_convert(Command app) {
       "resampled or repaired. What was ignored in reading, or cannot be stored in the new format, is\n"
       "reported on standard error.");
   arguments->reading.options.own_samples = false;
+  arguments->reading.options.emg = recording::EmgReading::same_clock;
   add_reading_options(command, arguments->reading);
   add_sensor_options(command, arguments->sensor);
   command.get_option("FILE").description("the recording to read (several with --parts), then the file to write");

@@ -153,6 +153,7 @@ Action add_info(Command app) {
       "      lists every format that mbk reads\n\n"
       "Nothing is repaired: gaps, repeated or backward time and non-finite values are reported.");
   arguments->reading.options.own_samples = false;
+  arguments->reading.options.emg = recording::EmgReading::same_clock;
   add_reading_options(command, arguments->reading);
   command.get_option("FILE").required(false);
   command.add_flag("--formats", arguments->formats, "list the formats that mbk reads");

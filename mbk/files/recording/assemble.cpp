@@ -69,7 +69,10 @@ struct Signal {
   bool is_scaled = false;  ///< the map states a gain or offset, if only *1
   bool mapped = false;     ///< by --channels
   std::string joint = {};  ///< name of its joint in the file; "" where it says none
+  std::string emg = {};    ///< the channel: "emg_biceps"; "" of other kinds
 
+  [[nodiscard]] std::string_view channel() const { return emg.empty() ? kind->name : std::string_view(emg); }
+  [[nodiscard]] std::string_view alias() const { return emg.empty() ? kind->alias : std::string_view(emg); }
   [[nodiscard]] bool is_plain() const { return gain == 1.0 && offset == 0.0; }
 };
 
@@ -202,6 +205,8 @@ class Assembler {
           fmt::format("--variable {} selects a variable of a MAT file, but this file is a table", options_.variable),
           "name its columns with --channels");
     }
+    auto emg = MBK_TRY(emg_by_name());
+    has_emg_ = !emg.empty();
     if (leaves_names(options_)) {
       MBK_TRY(recognise());
       if (maps_time()) std::erase_if(signals_, [](const Signal& signal) { return is_time(signal.kind); });
@@ -209,6 +214,7 @@ class Assembler {
     if (!options_.channels.empty()) {
       MBK_TRY(follow_map());
     }
+    add_emg(std::move(emg));
     note_aside();
     MBK_TRY(choose_clock());
     MBK_TRY(check());
@@ -247,7 +253,7 @@ class Assembler {
     const auto logs = MBK_TRY(find_logs());
     if (logs != nullptr) return take_logs(*logs);
     MBK_TRY(take_names());
-    if (std::ranges::any_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) return {};
+    if (has_emg_ || std::ranges::any_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) return {};
     if (!options_.channels.empty()) return {};  // the map names them
     for (const Array& array : contents_.arrays) {
       if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
@@ -466,11 +472,98 @@ class Assembler {
     }
   }
 
+  /// Columns, variables, and rows or columns of matrices whose names contain the word EMG.
+  Result<std::vector<Signal>> emg_by_name() {
+    std::vector<Signal> found;
+    if (options_.emg == EmgReading::none) return found;
+    const ChannelKind* const kind = kinds_called("emg").front();
+    for (const Array& array : contents_.arrays) {
+      const std::string channel = emg_of(array.name);
+      if (channel.empty() || array.obstacle || array.is_block() || array.values.size() == 0) continue;
+      const auto unit = MBK_TRY(unit_said(
+          *kind, array, parse_column_name(contents_.table ? std::string_view(array.name) : leaf(array.name)).unit));
+      const bool whole = contents_.table || is_vector(array);
+      const Index lines = whole ? 1 : is_wide(array) ? array.values.rows() : array.values.cols();
+      for (Index k = 0; k < lines; ++k) {
+        const std::string source = whole ? array.name : fmt::format("{}[{}]", array.name, k + 1);
+        Signal signal{kind, whole ? vector_of(array) : Line{&array, k, is_wide(array)}, unit, false, source, source};
+        signal.emg = whole ? channel : fmt::format("{}_{}", channel, k + 1);
+        found.push_back(std::move(signal));
+      }
+    }
+    return found;
+  }
+
+  /// The EMG channel that an array's name says, or the path to it: "emg_ch_1" of the label Ch1 of the stream EMG.
+  [[nodiscard]] std::string emg_of(std::string_view name) const {
+    std::string channel = contents_.table ? std::string() : emg_channel(leaf(name));
+    return channel.empty() ? emg_channel(name) : channel;
+  }
+
+  /// Adds the EMG that was found by name, but what the map names already or what has another clock and was not asked
+  /// for.
+  void add_emg(std::vector<Signal> found) {
+    const auto other =
+        std::ranges::find_if(signals_, [](const Signal& s) { return s.emg.empty() && !is_time(s.kind); });
+    std::vector<Signal> added;
+    for (Signal& signal : found) {
+      const Signal& first = other != signals_.end() ? *other : added.empty() ? signal : added.front();
+      const bool same = clock_of(signal) == clock_of(first) && signal.line.rate_hz() == first.line.rate_hz() &&
+                        signal.line.size() == first.line.size();
+      const bool named = std::ranges::any_of(signals_, [&](const Signal& one) {
+        return one.line.array == signal.line.array && one.line.index == signal.line.index;
+      });
+      if (named || (options_.emg == EmgReading::same_clock && !same)) continue;
+      const auto twice = [&](const Signal& one) { return one.emg == signal.emg; };
+      for (int k = 2; std::ranges::any_of(signals_, twice) || std::ranges::any_of(added, twice); ++k) {
+        signal.emg = fmt::format("{}_{}", emg_of(signal.line.array->name), k);
+      }
+      added.push_back(std::move(signal));
+    }
+    for (Signal& signal : added) signals_.push_back(std::move(signal));
+    if (options_.emg == EmgReading::all) give_clocks();
+  }
+
+  /// Rates of a file without clocks become clocks, where the EMG has another rate than the other channels.
+  void give_clocks() {
+    const auto differs = [&](const Signal& signal) {
+      return signal.line.array->clock < 0 && signal.line.rate_hz() > 0.0 && !is_time(signal.kind);
+    };
+    std::vector<double> rates;
+    for (const Signal& signal : signals_) {
+      if (!differs(signal)) return;
+      if (std::ranges::find(rates, signal.line.rate_hz()) == rates.end()) rates.push_back(signal.line.rate_hz());
+    }
+    if (rates.size() < 2 || !contents_.clocks.empty()) return;
+    for (const double rate : rates) {
+      Index samples = 0;
+      for (const Signal& signal : signals_) {
+        if (signal.line.rate_hz() == rate) samples = std::max(samples, signal.line.size());
+      }
+      contents_.clocks.push_back(
+          {fmt::format("{:g} Hz", rate), Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / rate});
+    }
+    for (const Signal& signal : signals_) {
+      const auto array = std::ranges::find(contents_.arrays, signal.line.array, [](Array& one) { return &one; });
+      array->clock = static_cast<int>(std::ranges::find(rates, signal.line.rate_hz()) - rates.begin());
+    }
+  }
+
   /// Notes arrays that neither name nor map assign to a channel.
   void note_aside() {
     std::erase_if(aside_, [&](const std::string& name) {
       return name.empty() || std::ranges::any_of(signals_, [&](const Signal& s) { return s.line.array->name == name; });
     });
+    std::vector<std::string> emg;
+    std::erase_if(aside_, [&](const std::string& name) {
+      const bool is = !emg_of(name).empty();
+      if (is) emg.push_back(name);
+      return is;
+    });
+    if (!emg.empty()) {
+      recording_.notes.push_back(
+          fmt::format("EMG was found but not read: {}; 'mbk explore --only emg' analyses it", quoted(emg)));
+    }
     if (aside_.empty()) return;
     const bool third = std::ranges::any_of(aside_, [](const std::string& name) {
       const auto kinds = parse_column_name(name).kinds;
@@ -581,6 +674,7 @@ class Assembler {
                     entry.negate, entry.source, (entry.negate ? "-" : "") + entry.source,
                     found.gain,   found.offset, found.is_scaled,
                     true};
+      if (kind->name == "emg") signal.emg = entry.channel;
       states_time_ = states_time_ || (is_time(kind) && !entry.unit.empty());
       if (!entry.unit.empty()) {
         signal.unit = find_unit(entry.unit);
@@ -997,7 +1091,7 @@ class Assembler {
     for (std::size_t i = 0; i < signals_.size(); ++i) {
       const Signal& signal = signals_[i];
       for (std::size_t j = 0; j < i; ++j) {
-        if (signals_[j].kind != signal.kind) continue;
+        if (signals_[j].channel() != signal.channel()) continue;
         return bad_data(
             fmt::format("{} and {} are both {}", place_of(signals_[j]), place_of(signal), signal.kind->name),
             fmt::format("select one, as in --channels {}", map_of_signals()));
@@ -1039,7 +1133,7 @@ class Assembler {
                                     : signal.entry;
       const bool second = std::ranges::find(seen, signal.kind) != seen.end();
       (second ? others : map)
-          .push_back(fmt::format("{}={}{}{}", signal.kind->alias, entry, signal.unit != nullptr ? ":" : "",
+          .push_back(fmt::format("{}={}{}{}", signal.alias(), entry, signal.unit != nullptr ? ":" : "",
                                  signal.unit != nullptr ? signal.unit->name : ""));
       seen.push_back(signal.kind);
     }
@@ -1090,12 +1184,25 @@ class Assembler {
     } else if (!used.empty() &&
                std::ranges::all_of(used, [&](const Clock* clock) { return same_stamps(*clock, *used.front()); })) {
       clock_ = used.front();
+    } else if (const Clock* const emg = options_.emg == EmgReading::all ? clock_of_emg() : nullptr) {
+      clock_ = emg;
     } else if (!used.empty()) {
       return bad_data(fmt::format("the channels come from streams with different clocks: {}", clock_list(used)),
                       fmt::format("select the time stamps with --clock '{}'; the other streams are interpolated",
                                   fastest(used).name));
     }
     return check_named_time(used);
+  }
+
+  /// The fastest of the EMG; nullptr if there is none.
+  [[nodiscard]] const Clock* clock_of_emg() const {
+    const Clock* found = nullptr;
+    for (const Signal& signal : signals_) {
+      if (signal.emg.empty() || clock_of(signal) < 0) continue;
+      const Clock& own = contents_.clocks[static_cast<std::size_t>(clock_of(signal))];
+      if (found == nullptr || rate_of(own) > rate_of(*found)) found = &own;
+    }
+    return found;
   }
 
   /// A map may say that other stamps of the stream are its time, as those that were not corrected.
@@ -1117,7 +1224,7 @@ class Assembler {
     for (const Signal& signal : signals_) {
       if (signal.kind->name == "time") continue;
       const Clock& own = clock_of(signal) >= 0 ? contents_.clocks[static_cast<std::size_t>(clock_of(signal))] : *clock_;
-      signals.push_back({signal.kind->name, &own, &recording_.channels[channel++].values});
+      signals.push_back({signal.channel(), &own, &recording_.channels[channel++].values});
     }
     auto common = MBK_TRY(put_on_clock(*clock_, signals));
     recording_.time = std::move(common.time);
@@ -1219,10 +1326,11 @@ class Assembler {
       }
       // The description of the robot says whether a named joint turns or slides.
       const auto unit = signal.unit != nullptr          ? si_unit(signal.unit->dimension)
+                        : !signal.emg.empty()           ? std::string_view()  // amplifiers differ
                         : signal.kind->measures.empty() ? std::string_view(signal.line.array->unit)
                         : !signal.joint.empty()         ? std::string_view()
                                                         : signal.kind->default_unit();
-      recording_.channels.push_back({std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame),
+      recording_.channels.push_back({std::string(signal.channel()), std::string(unit), std::string(signal.kind->frame),
                                      std::move(channel), origin_of(signal)});
     }
   }
@@ -1289,7 +1397,7 @@ class Assembler {
 
   static ChannelOrigin origin_of(const Signal& signal) {
     const std::string_view unit = signal.unit != nullptr ? signal.unit->name : std::string_view();
-    return {std::string(signal.kind->alias), signal.entry, std::string(unit), called_otherwise(signal), signal.joint};
+    return {std::string(signal.alias()), signal.entry, std::string(unit), called_otherwise(signal), signal.joint};
   }
 
   /// The name of this line in the file, or from its row in a logs matrix; nothing if it is not a channel.
@@ -1425,6 +1533,7 @@ class Assembler {
   const Clock* clock_ = nullptr;                  ///< of the recording, where the file has clocks
   bool states_time_ = false;                      ///< the map states the unit of time
   std::vector<std::string> aside_;                ///< names of no channel
+  bool has_emg_ = false;                          ///< by name
   std::vector<std::string> possible_times_ = {};  ///< by their names, where none is recognised
   Index trials_ = 0;                              ///< that the slices of the map leave over; 0: none
   Recording recording_;

@@ -54,7 +54,8 @@ Result<ChannelSource> parse_entry(std::string_view entry) {
                      fmt::format("did you mean '{}'?", nearest_channel_name(name)));
   }
   ChannelSource result;
-  result.channel = kinds.size() == 1 ? kinds.front()->name : kinds.front()->alias;
+  const std::string emg = kinds.front()->name == "emg" ? emg_channel(name) : "";
+  result.channel = !emg.empty() ? emg : kinds.size() == 1 ? kinds.front()->name : kinds.front()->alias;
 
   if (source.starts_with('-')) {
     result.negate = true;

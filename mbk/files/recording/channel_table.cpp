@@ -27,6 +27,8 @@ constexpr std::array kAnyReference{length, angle, force, torque};
 constexpr std::array kAnyAcceleration{acceleration, angular_acceleration};
 constexpr std::span<const Dimension> kAnything;
 
+constexpr std::string_view kEmg = "emg";  ///< and any muscle or number: emg_biceps
+
 constexpr auto kKinds = std::to_array<ChannelKind>({
     {"time", "t", kTime, "", 0, 1},
     {"hand_x", "x", kLength, "base", 2, 2},
@@ -71,6 +73,7 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"sensor_qw", "sensor_qw", kAnything, "", 0, 0},
     {"voltage_x", "Vx", kVoltage, "", 2, 0},
     {"voltage_y", "Vy", kVoltage, "", 2, 0},
+    {kEmg, kEmg, kVoltage, "", 0, 0, false, true},
     {"position", "x", kAnyPosition, "", 1, 0},
     {"reaction", "F", kAnyForce, "", 1, 0},
     {"reference", "xr", kAnyReference, "", 1, 0},
@@ -123,7 +126,33 @@ std::vector<const ChannelKind*> kinds_called(std::string_view name) {
   for (const ChannelKind& kind : kKinds) {
     if (same_name(name, kind.name) || same_name(name, kind.alias)) kinds.push_back(&kind);
   }
+  if (kinds.empty() && in_lower_case(name.substr(0, kEmg.size())) == kEmg && !emg_channel(name).empty()) {
+    kinds.push_back(&*std::ranges::find(kKinds, kEmg, &ChannelKind::name));
+  }
   return kinds;
+}
+
+std::string emg_channel(std::string_view name) {
+  std::vector<std::string> words;  // of letters or of digits
+  const auto kind_of = [](char c) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0   ? 1
+           : std::isalpha(static_cast<unsigned char>(c)) != 0 ? 2
+                                                              : 0;
+  };
+  int last = 0;
+  for (const char c : name) {
+    const int kind = kind_of(c);
+    if (kind != 0 && kind != last) words.emplace_back();
+    if (kind != 0) words.back() += c;
+    last = kind;
+  }
+  const Unit* const unit = words.size() > 1 ? find_unit(words.back()) : nullptr;
+  if (unit != nullptr && unit->dimension == voltage) words.pop_back();
+  for (std::string& word : words) word = in_lower_case(word);
+  if (std::erase_if(words, [](const std::string& word) { return word == kEmg || word == "semg"; }) == 0) return {};
+  std::string channel(kEmg);
+  for (const std::string& word : words) channel += "_" + word;
+  return channel;
 }
 
 std::string_view nearest_channel_name(std::string_view name) {
@@ -184,7 +213,8 @@ bool names_a_current(std::string_view name) {
 ColumnName parse_column_name(std::string_view name) {
   name = trimmed(name);
   ColumnName column{kinds_called(name), nullptr};
-  if (!column.kinds.empty() || name.empty()) return column;
+  const bool emg = !column.kinds.empty() && column.kinds.front()->name == kEmg;  // and its unit: emg_biceps_mV
+  if ((!column.kinds.empty() && !emg) || name.empty()) return column;
 
   std::string_view base;
   const char last = name.back();
@@ -205,7 +235,7 @@ ColumnName parse_column_name(std::string_view name) {
     column.unit = find_unit(unit);
     if (base.ends_with(" in")) base = trimmed(base.substr(0, base.size() - 3));
   }
-  if (column.unit == nullptr) return column;
+  if (column.unit == nullptr || emg) return column;
   column.kinds = kinds_called(base);
   std::erase_if(column.kinds, [&](const ChannelKind* kind) { return !kind->accepts(*column.unit); });
   return column;

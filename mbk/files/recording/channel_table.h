@@ -40,8 +40,12 @@ inline constexpr int kMaxJoints = 8;
 [[nodiscard]] std::vector<const Channel*> in_order(const std::vector<Channel>& channels);
 
 /// The kinds that a name or alias can mean: none, one, or two ("x", "xr"). Case is ignored, except in names of one
-/// letter and in Vx and Vy: vx is a velocity.
+/// letter and in Vx and Vy: vx is a velocity. A name such as emg_biceps is of the kind "emg".
 [[nodiscard]] std::vector<const ChannelKind*> kinds_called(std::string_view name);
+
+/// The channel of a column whose name contains the word EMG, "emg_biceps" of "Biceps EMG" and "emg_1" of "EMG1",
+/// without the unit that the name may end with; "" of any other. It is of the kind "emg", whatever follows.
+[[nodiscard]] std::string emg_channel(std::string_view name);
 
 /// The known name or alias most similar to `name`.
 [[nodiscard]] std::string_view nearest_channel_name(std::string_view name);

@@ -48,6 +48,24 @@ TEST(ChannelTable, AThirdAxisIsNeverImplied) {
   }
 }
 
+TEST(ChannelTable, EmgIsFoundByTheWordInANameWhateverTheMuscle) {
+  for (const auto& [name, channel] : {std::pair{"emg_biceps", "emg_biceps"},
+                                      {"EMG1", "emg_1"},
+                                      {"Biceps EMG", "emg_biceps"},
+                                      {"emg_triceps_mV", "emg_triceps"},
+                                      {"EMG bic. brev. [uV]", "emg_bic_brev"},
+                                      {"sEMG", "emg"},
+                                      {"demography", ""},
+                                      {"memg", ""},
+                                      {"force_x", ""}}) {
+    EXPECT_EQ(emg_channel(name), channel) << name;
+  }
+  EXPECT_EQ(kinds_called("emg_biceps").front()->name, "emg");
+  EXPECT_TRUE(kinds_called("Biceps EMG").empty());  // in a map it begins with emg
+  EXPECT_EQ(parse_column_name("emg_biceps_mV").unit, find_unit("mV"));
+  EXPECT_EQ(parse_column_name("EMG biceps [uV]").unit, find_unit("uV"));
+}
+
 TEST(ChannelTable, NamesTheNearestWhateverItsCase) {
   EXPECT_EQ(nearest_channel_name("HNAD_X"), "hand_x");
   EXPECT_EQ(nearest_channel_name("vx"), "Vx");

@@ -24,6 +24,13 @@ class RecordingFile;
 /// in seconds.
 inline constexpr std::string_view kNothingRecognised = "nothing-recognised", kUnbelievableTime = "unbelievable-time";
 
+/// Which columns are read as EMG, if their names contain the word EMG; those that a map names are read in any case.
+enum class EmgReading {
+  none,
+  same_clock,  ///< that were sampled with the other channels
+  all,         ///< if at another rate, the other channels are interpolated linearly to the clock of the EMG
+};
+
 /// How a file is to be read. Every default is right for a file that names its channels, holds one trial and has a time
 /// for each sample; then
 ///
@@ -67,6 +74,8 @@ struct ReadOptions {
   /// The stream or topic whose time stamps the recording has, if channels come from several; the others are
   /// interpolated linearly. "": all channels must come from one, and nothing is converted to another clock.
   std::string clock;
+
+  EmgReading emg = EmgReading::none;
 
   /// The record, if a file or folder holds several (`trials_of` lists them). "": its only one.
   std::string trial;
