@@ -478,7 +478,8 @@ class Assembler {
     if (options_.emg == EmgReading::none) return found;
     const ChannelKind* const kind = kinds_called("emg").front();
     for (const Array& array : contents_.arrays) {
-      const std::string channel = emg_of(array.name);
+      std::string channel = emg_of(array.name);
+      if (channel.empty() && is_microvolts(array)) channel = emg_channel("EMG " + array.name);
       if (channel.empty() || array.obstacle || array.is_block() || array.values.size() == 0) continue;
       const auto unit = MBK_TRY(unit_said(
           *kind, array, parse_column_name(contents_.table ? std::string_view(array.name) : leaf(array.name)).unit));
@@ -492,6 +493,13 @@ class Assembler {
       }
     }
     return found;
+  }
+
+  /// Of signals of a limb, only muscles are measured in microvolts: "Vastus medialis" in C3D.
+  [[nodiscard]] bool is_microvolts(const Array& array) const {
+    const Unit* const unit = find_unit(array.unit);
+    return options_.emg == EmgReading::all && unit != nullptr && unit->name == "uV" &&
+           parse_column_name(array.name).kinds.empty();
   }
 
   /// The EMG channel that an array's name says, or the path to it: "emg_ch_1" of the label Ch1 of the stream EMG.
@@ -515,8 +523,9 @@ class Assembler {
       });
       if (named || (options_.emg == EmgReading::same_clock && !same)) continue;
       const auto twice = [&](const Signal& one) { return one.emg == signal.emg; };
+      const std::string stem = signal.emg;
       for (int k = 2; std::ranges::any_of(signals_, twice) || std::ranges::any_of(added, twice); ++k) {
-        signal.emg = fmt::format("{}_{}", emg_of(signal.line.array->name), k);
+        signal.emg = fmt::format("{}_{}", stem, k);
       }
       added.push_back(std::move(signal));
     }
@@ -577,6 +586,7 @@ class Assembler {
   [[nodiscard]] std::string unknown_unit_of(const Array& array) const {
     const auto open = array.name.find_last_of("[(");
     if (!array.means.empty() || open == array.name.npos || !ends_in_brackets(array.name)) return {};
+    if (!emg_of(array.name).empty()) return {};
     const std::vector<const ChannelKind*> kinds = parse_column_name(leaf(array.name.substr(0, open))).kinds;
     if (kinds.empty() || is_spare(*kinds.front())) return {};
     return fmt::format("'{}' was ignored: {} cannot have the unit '{}'; state its unit, as in --channels \"{}={}:{}\"",

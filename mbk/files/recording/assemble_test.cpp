@@ -91,6 +91,23 @@ TEST(Assemble, TakesEachColumnOfAMatrixCalledEmg) {
   EXPECT_EQ(recording->find("emg_3")->values[49], 3.0);
 }
 
+TEST(Assemble, MicrovoltsAreEmgWhateverTheirName) {
+  Contents contents = elbow_with_emg();
+  contents.arrays[2].name = "Vastus medialis";
+  contents.arrays[2].unit = "uV";
+  contents.arrays[3].name = "EMG1";
+  contents.arrays.push_back(contents.arrays[3]);
+  ReadOptions options;
+  options.axes = 1;
+  options.emg = EmgReading::all;
+  const auto recording = assemble(contents, options);
+  ASSERT_TRUE(recording) << recording.error().line();
+  ASSERT_NE(recording->find("emg_vastus_medialis"), nullptr);
+  EXPECT_NEAR(recording->find("emg_vastus_medialis")->values[1000], 3e-6, 1e-15);
+  EXPECT_NE(recording->find("emg_1"), nullptr);
+  EXPECT_NE(recording->find("emg_1_2"), nullptr);
+}
+
 TEST(Assemble, EmgOfAnotherRateIsNotMixedWithTheOtherChannels) {
   ReadOptions options;
   options.axes = 1;
