@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -25,7 +27,10 @@ constexpr double kNoiseDeviations = 6.0;
 constexpr double kLeastThreshold = 0.002;  ///< of the displacement
 constexpr Index kMinEmgTrials = 3;
 constexpr int kReplicates = 1000;
-constexpr double kAfterWindow = 0.025;     ///< [s] data after the window that the change points are fitted to
+constexpr double kTail = 0.025;            ///< of the bootstrap at each end of an interval
+constexpr double kLeastDeviation = 1e-3;   ///< of a replicate, of that of the trials: all its trials may be one
+constexpr double kFamilyLevel = 0.03;      ///< of all windows of a direction together: 1 % in each of three
+constexpr double kAfterWindow = 0.01;      ///< [s] data after the window that the change points are fitted to
 constexpr double kShortestLevel = 0.005;   ///< [s]
 constexpr double kSameDirection = 0.9659;  ///< cos 15°
 constexpr double kCurveStep = 0.001;       ///< [s]
@@ -51,13 +56,6 @@ double crossing(const Vector& along, Index peak, double threshold) {
   while (i > 0 && along[i] > threshold) --i;
   const double rise = along[i + 1] - along[i];
   return static_cast<double>(i) + (rise > 0.0 ? std::clamp((threshold - along[i]) / rise, 0.0, 1.0) : 1.0);
-}
-
-/// The tail probability of each end at which percentiles of a bootstrap of G trials have the width of Student's t.
-double expanded_tail(Index trials) {
-  const auto count = static_cast<double>(trials);
-  return numeric::normal_probability(-std::sqrt(count / (count - 1.0)) *
-                                     numeric::student_quantile(0.975, static_cast<int>(trials) - 1));
 }
 
 Interval percentiles(Vector replicates, double tail) {
@@ -89,13 +87,28 @@ EmgWindowResponse window_response(const Vector& window, const Vector& background
   const double w = window.mean(), b = background.mean();
   EmgWindowResponse found;
   found.ratio = w / b;
-  const Vector replicates = ((weights * window).array() / (weights * background).array()).matrix();
-  found.interval95 = percentiles(replicates, expanded_tail(trials));
-  const Vector difference = window / w - background / b;
-  const double error = std::sqrt(numeric::variance(difference) / static_cast<double>(trials));
-  const double level = 0.05 / static_cast<double>(windows);
-  const double quantile = numeric::student_quantile(1.0 - 0.5 * level, static_cast<int>(trials) - 1);
-  if (std::abs(std::log(found.ratio)) > quantile * error) {
+  // Bootstrap-t of ln r, whose variance over trials is that of w_g/w − b_g/b.
+  const Vector ws = weights * window, bs = weights * background;
+  const auto deviation = [](double ww, double wb, double bb, double mean_w, double mean_b) {
+    return std::sqrt(std::max(0.0, ww / (mean_w * mean_w) - 2.0 * wb / (mean_w * mean_b) + bb / (mean_b * mean_b)));
+  };
+  const auto count = static_cast<double>(trials);
+  const double own =
+      deviation(window.squaredNorm() / count, window.dot(background) / count, background.squaredNorm() / count, w, b);
+  const Vector ww = weights * window.cwiseAbs2(), wb = weights * window.cwiseProduct(background),
+               bb = weights * background.cwiseAbs2();
+  Vector t(weights.rows());
+  for (Index k = 0; k < t.size(); ++k) {
+    t[k] = std::log(ws[k] / bs[k] / found.ratio) /
+           std::max(deviation(ww[k], wb[k], bb[k], ws[k], bs[k]), kLeastDeviation * own);
+  }
+  const Interval ends = percentiles(std::move(t), kTail);
+  found.interval95 = {found.ratio * std::exp(-ends.second * own), found.ratio * std::exp(-ends.first * own)};
+  const Vector difference = window - background;
+  const double error = std::sqrt(numeric::variance(difference) / count);
+  const double quantile =
+      numeric::student_quantile(1.0 - 0.5 * kFamilyLevel / static_cast<double>(windows), static_cast<int>(trials) - 1);
+  if (std::abs(w - b) > quantile * error) {
     found.response = found.ratio > 1.0 ? EmgChange::increase : EmgChange::decrease;
   }
   return found;
@@ -141,6 +154,8 @@ std::optional<ChangePoints> change_points(const Vector& sums, Index first, Index
     if (off < rows && rows - off < shortest) continue;
     const auto on = rise_before(sums, first, std::min(last, off - shortest), off);
     if (!on) continue;
+    const double level = (sums[off] - sums[*on]) / static_cast<double>(off - *on);
+    if (sums[rows] - sums[off] > level * static_cast<double>(rows - off)) continue;  // the rise would be at `off`
     const double likelihood = level_likelihood(sums[*on], *on) + level_likelihood(sums[off] - sums[*on], off - *on) +
                               level_likelihood(sums[rows] - sums[off], rows - off);
     if (likelihood <= largest) continue;
@@ -152,7 +167,7 @@ std::optional<ChangePoints> change_points(const Vector& sums, Index first, Index
 
 /// @param end_s  of the window in which the response was seen
 std::optional<EmgLatency> latency_of(const Matrix& rectified, const Matrix& weights, Index onset, double end_s,
-                                     double sample_time) {
+                                     double sample_time, std::uint64_t seed) {
   const Index last = onset + emg_samples(end_s, sample_time);
   const Index rows = std::min(last + emg_samples(kAfterWindow, sample_time), rectified.rows());
   const Index shortest = std::max<Index>(emg_samples(kShortestLevel, sample_time), 2);
@@ -162,17 +177,16 @@ std::optional<EmgLatency> latency_of(const Matrix& rectified, const Matrix& weig
   if (!at) return {};
   const auto seconds = [&](double row) { return (row - 0.5 - static_cast<double>(onset)) * sample_time; };
   const Matrix means = epochs * weights.transpose();  // N×B
+  numeric::Random random(seed, 1);
   Vector replicates(weights.rows());
   Index count = 0;
   for (Index b = 0; b < weights.rows(); ++b) {
     const auto on = rise_before(running_sums(means.col(b)), onset, std::min(last, at->off - shortest), at->off);
-    if (on) replicates[count++] = seconds(static_cast<double>(*on));
+    if (on) replicates[count++] = seconds(static_cast<double>(*on) + random.uniform(-0.5, 0.5));
   }
   if (2 * count < weights.rows()) return {};
   replicates.conservativeResize(count);
-  EmgLatency latency{seconds(static_cast<double>(at->on)), percentiles(replicates, expanded_tail(rectified.cols()))};
-  latency.interval95.first -= 0.5 * sample_time;
-  latency.interval95.second += 0.5 * sample_time;
+  EmgLatency latency{seconds(static_cast<double>(at->on)), percentiles(replicates, kTail)};
   return latency;
 }
 
@@ -386,7 +400,7 @@ Result<EmgResponse> emg_response(const Matrix& rectified, double sample_time, co
     found.windows.push_back(window_response(window, background, weights, windows));
     if (!first_end && found.windows.back().response == EmgChange::increase) first_end = options.edges_s[k + 1];
   }
-  if (first_end) found.latency = latency_of(rectified, weights, onset, *first_end, sample_time);
+  if (first_end) found.latency = latency_of(rectified, weights, onset, *first_end, sample_time, seed);
   return found;
 }
 

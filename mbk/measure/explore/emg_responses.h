@@ -43,19 +43,18 @@ struct EmgResponse {
 /// Response of one muscle to perturbations in one direction, from the rectified EMG of its trials (rows: samples from
 /// background_s before the onset on, columns: trials; row of the onset: background_s/T).
 ///
-/// Windows: ratio r = Σ_g w_g/Σ_g b_g of the means in the window and before the onset. The interval is that of a
-/// bootstrap by trials of ln r, expanded to the width of Student's t (Hesterberg 2015, Am Stat 69:371). A response is
-/// said where ln r differs from 0 by Student's t at a level of 5 %/(number of windows), with the standard error of
-/// d_g = w_g/w̄ − b_g/b̄ over trials.
+/// Windows: ratio r = Σ_g w_g/Σ_g b_g of the means in the window and before the onset. The interval is that of the
+/// bootstrap-t by trials of ln r (Efron & Tibshirani 1993, An Introduction to the Bootstrap, §12.5). There is a
+/// response if the mean of w_g − b_g differs from 0 by Student's t at a level of 3 %/(number of windows): 1 % in each
+/// of three.
 ///
-/// Latency, of the first window with an increase: change points τ < σ of the trial mean m(t) of three levels a₀ < a₁,
-/// a₂
-///   max over τ, σ of −Σ_t [ln μ(t) + m(t)/μ(t)],  μ = a₀ before τ, a₁ to σ, a₂ after,
+/// Latency, of the first window with an increase: change points τ < σ of the trial mean m(t)
+///   max over τ, σ of −Σ_t [ln μ(t) + m(t)/μ(t)],  μ = a₀ before τ, a₁ > a₀ to σ, a₂ ≤ a₁ after,
 /// which is the likelihood of an amplitude-modulated noise whose standard deviation follows its mean (Staude & Wolf
-/// 1999, Med Eng Phys 21:449), with τ from the onset to the end of that window and data to 25 ms after it. The
-/// interval: τ of trials drawn with replacement, expanded likewise, and half a sample at both ends. A threshold at
-/// background plus some standard deviations detects late by what the response needs to reach it; the change point does
-/// not.
+/// 1999, Med Eng Phys 21:449), with τ from the onset to the end of that window and data to 10 ms after it. The
+/// interval: 2.5 % and 97.5 % of τ in trials drawn with replacement, each τ anywhere between the two samples beside it.
+/// A threshold of background plus some standard deviations detects late, by what the response needs to reach it; the
+/// change point does not. Of a response that rises slowly it is the middle of the rise.
 /// @param rectified N×G, G ≥ 3    @param seed  of the bootstrap
 /// @fails data: fewer than 3 trials; no signal before the onset.
 [[nodiscard]] Result<EmgResponse> emg_response(const Matrix& rectified, double sample_time, const EmgOptions& options,
