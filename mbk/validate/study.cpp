@@ -30,6 +30,8 @@ constexpr std::array kOfChange = {JudgedShare{kHardlyEver, 1.0}, JudgedShare{kNe
 constexpr std::array kOfFrequencyResponse = {JudgedShare{kHardlyEver, 1.0}, JudgedShare{kNearlyAlways, 100.0},
                                              JudgedShare{kNominal, 95.0, 5.0}};
 constexpr std::array kOfDisplacements = {JudgedShare{kNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
+constexpr std::array kOfEmg = {JudgedShare{kNominal, 95.0}, JudgedShare{kHardlyEver, 2.5},
+                               JudgedShare{kNearlyAlways, 99.0}};
 constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
 constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfReliability = {JudgedShare{kNominal, 95.0}, JudgedShare{kFalsePositives, 5.0}};
@@ -69,6 +71,7 @@ std::span<const Study> studies() {
             reflex_study},
       Study{"change", "M, B and K over time, of arms that change and that do not", kOfChange, 2, change_study},
       Study{"after-onset", "what the first 120 ms after a pulse show of a rigid arm", kOfChange, 2, after_onset_study},
+      Study{"emg", "amplitude and latency of EMG responses after a perturbation", kOfEmg, 1000, emg_study},
       Study{"reliability", "ICC, SEM, MDC and differences of groups, of studies drawn from known variances",
             kOfReliability, 2, reliability_study},
       Study{"recorded-reliability",

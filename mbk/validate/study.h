@@ -166,6 +166,13 @@ inline constexpr int kTrialsWithoutController = 16;
 /// % wherever it is called identifiable, and that ten trials of 8 N tell M.
 [[nodiscard]] Result<ValidationTable> after_onset_study(const StudyOptions& options);
 
+/// EMG responses after a perturbation (measure/explore/emg_responses.h), of noise between 20 and 450 Hz whose amplitude
+/// doubles 25 to 45 ms after the onset, for 10, 20 and 40 trials: error and coverage of the latency, coverage of the
+/// ratios in the three windows, and how often a response is found where there is none. A run is one recording of each
+/// with a response and one without. Expected: latencies within 3 ms, coverage of 92 to 98 %, hardly ever a response
+/// where there is none.
+[[nodiscard]] Result<ValidationTable> emg_study(const StudyOptions& options);
+
 /// How often do the intervals of intraclass correlations, standard errors of measurement, limits of agreement and
 /// effect sizes (study/reliability) hold the truth, and how often are groups called different that are alike? A run is
 /// one study of 20 people in three sessions of each kind, drawn from known variances: balanced, with trials and

@@ -31,7 +31,7 @@ TYPED = {  # what has been typed → what is offered
     ("teleop", "--ex"): ["--excess"],
     ("teleop", "--sim"): ["--simulate"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
-    ("validate", ""): ["after-onset", "all", "change", "closed-loop", "coverage", "faults", "frequency-response", "live-estimate",
+    ("validate", ""): ["after-onset", "all", "change", "closed-loop", "coverage", "emg", "faults", "frequency-response", "live-estimate",
                        "misspecification", "one-dimensional", "participant", "passivity", "ramp-and-hold",
                        "recorded-reliability", "recovery", "reflex", "reliability", "robot", "servo-displacement", "spatial",
                        "springs", "teleoperation", "transfer-function", "virtual-sensor"],

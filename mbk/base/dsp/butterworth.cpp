@@ -8,7 +8,9 @@
 
 namespace mbk::dsp {
 
-Result<SectionCascade> butterworth_lowpass(int order, Hertz cutoff, Hertz sample_rate) {
+namespace {
+
+Result<void> check_butterworth(int order, Hertz cutoff, Hertz sample_rate) {
   const double nyquist = 0.5 * sample_rate.value;
   if (order < 1 || order > 20) {
     return bad_usage(fmt::format("Butterworth order {} is not between 1 and 20", order));
@@ -17,6 +19,13 @@ Result<SectionCascade> butterworth_lowpass(int order, Hertz cutoff, Hertz sample
     return bad_usage(fmt::format("cutoff {:g} Hz is not between 0 and Nyquist {:g} Hz", cutoff.value, nyquist),
                      "choose a lower --cutoff");
   }
+  return {};
+}
+
+}  // namespace
+
+Result<SectionCascade> butterworth_lowpass(int order, Hertz cutoff, Hertz sample_rate) {
+  MBK_TRY(check_butterworth(order, cutoff, sample_rate));
   const double k = std::tan(std::numbers::pi * cutoff.value / sample_rate.value);
   SectionCascade filter;
   if (order % 2 == 1) {
@@ -30,6 +39,16 @@ Result<SectionCascade> butterworth_lowpass(int order, Hertz cutoff, Hertz sample
     const double b0 = k * k / a0;
     filter.push_back(
         {.b0 = b0, .b1 = 2.0 * b0, .b2 = b0, .a1 = 2.0 * (k - 1.0) * (k + 1.0) / a0, .a2 = (1.0 - c * k + k * k) / a0});
+  }
+  return filter;
+}
+
+Result<SectionCascade> butterworth_highpass(int order, Hertz cutoff, Hertz sample_rate) {
+  MBK_TRY(check_butterworth(order, cutoff, sample_rate));
+  auto filter = MBK_TRY(butterworth_lowpass(order, Hertz(0.5 * sample_rate.value - cutoff.value), sample_rate));
+  for (SecondOrderSection& section : filter) {
+    section.b1 = -section.b1;
+    section.a1 = -section.a1;
   }
   return filter;
 }

@@ -28,6 +28,11 @@ using SectionCascade = std::vector<SecondOrderSection>;
 /// @fails order outside 1…20; cutoff not in (0, rate/2).
 [[nodiscard]] Result<SectionCascade> butterworth_lowpass(int order, Hertz cutoff, Hertz sample_rate);
 
+/// Butterworth high-pass filter: that low-pass with s → 1/s, which after the bilinear transform is the low-pass at
+/// f_s/2 − f_c with z → −z; |H(f_c)|² = 1/2, |H(f_s/2)| = 1.
+/// @fails as butterworth_lowpass
+[[nodiscard]] Result<SectionCascade> butterworth_highpass(int order, Hertz cutoff, Hertz sample_rate);
+
 /// |H(e^{jω})| of a cascade at one frequency.
 [[nodiscard]] double gain(const SectionCascade& filter, Hertz frequency, Hertz sample_rate);
 

@@ -38,6 +38,20 @@ TEST(Butterworth, FollowsItsClosedForm) {
   }
 }
 
+TEST(Butterworth, HighPassFollowsItsClosedForm) {
+  // |H|² = 1/(1 + (tan(πfc/fs)/tan(πf/fs))^2n)
+  for (const int order : {1, 2, 5}) {
+    const auto filter = butterworth_highpass(order, Hertz(20.0), kRate);
+    ASSERT_TRUE(filter);
+    EXPECT_NEAR(gain(*filter, Hertz(0.0), kRate), 0.0, 1e-12);
+    for (double f = 2.0; f < 499.0; f *= 1.3) {
+      const double ratio = std::tan(M_PI * 20.0 / 1000.0) / std::tan(M_PI * f / 1000.0);
+      EXPECT_NEAR(gain(*filter, Hertz(f), kRate), 1.0 / std::sqrt(1.0 + std::pow(ratio, 2 * order)), 1e-11) << f;
+    }
+  }
+  EXPECT_FALSE(butterworth_highpass(2, Hertz(600.0), kRate));
+}
+
 TEST(Butterworth, ForwardAndBackwardAtFiveHertzHasThePublishedGains) {
   const auto filter = butterworth_lowpass(5, Hertz(5.0), kRate);
   ASSERT_TRUE(filter);

@@ -111,6 +111,39 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
   return trial;
 }
 
+/// EMG after the onsets of perturbations, with the epochs of all recordings pooled.
+/// @fails  usage: other signals are explored. data: the rates differ. As reclocked and explore::emg_responses.
+Result<void> add_emg(std::span<const Recording> recordings, std::span<const ExplorationTrial> trials,
+                     const ExploreOptions& options, Exploration& found) {
+  if (options.signals) return bad_usage("--only emg needs motion, not --input and --output");
+  const double T = trials.front().sample_time;
+  constexpr double kSameRate = 1e-6;
+  const auto rest = std::max<Index>(std::llround(options.emg.background_s / T), 1);
+  std::vector<preprocess::Reclocked> even;
+  even.reserve(recordings.size());  // the sources below point into it
+  std::vector<explore::EmgRecording> sources;
+  bool by_reference = true;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const ExplorationTrial& trial = trials[k];
+    if (!(std::abs(trial.sample_time / T - 1.0) < kSameRate)) {
+      return bad_data("the recordings have different sample rates", "use --resample");
+    }
+    auto one = preprocess::reclocked(recordings[k], recording::inspect(recordings[k]), options.resample);
+    if (!one) return tl::unexpected(one.error());
+    even.push_back(std::move(*one));
+    by_reference = by_reference && trial.reference.size() > 0;
+    auto onsets = explore::perturbation_onsets(trial, rest);
+    for (explore::Onset& onset : onsets) onset.sample += std::llround(trial.from_s / T);
+    sources.push_back({even.back().recording ? &*even.back().recording : &recordings[k], std::move(onsets)});
+  }
+  auto emg = explore::emg_responses(sources, T, options.emg);
+  if (!emg) return tl::unexpected(emg.error().in("EMG"));
+  emg->onset_rule = by_reference ? "reference" : "motion";
+  found.usable = std::ranges::any_of(emg->channels, &EmgChannelEstimate::usable);
+  found.emg = std::move(*emg);
+  return {};
+}
+
 bool requested(const ExploreOptions& options, ExplorationPart part) {
   return !options.only || *options.only == part;
 }
@@ -258,7 +291,8 @@ Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings, co
 
 Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options) {
   const bool reaches = !recordings.empty() && are_reaches(recordings, options);
-  const auto named = MBK_TRY(reaches ? whole_trials(recordings, options) : named_trials(recordings, options));
+  const bool whole = reaches || options.only == ExplorationPart::emg;
+  const auto named = MBK_TRY(whole ? whole_trials(recordings, options) : named_trials(recordings, options));
   const std::vector<ExplorationTrial>& trials = named;
   Exploration found;
   for (const ExplorationTrial& trial : trials) {
@@ -272,6 +306,10 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
   found.other_signals = options.signals.has_value();
   if (reaches) {
     MBK_TRY(add_reaches(trials, options, found));
+    return found;
+  }
+  if (options.only == ExplorationPart::emg) {
+    MBK_TRY(add_emg(recordings, trials, options, found));
     return found;
   }
   if (options.after_onset_s) {

@@ -7,6 +7,7 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
+#include "mbk/measure/explore/emg_responses.h"
 #include "mbk/measure/explore/frequency_response_of.h"
 #include "mbk/measure/explore/impulse_response.h"
 #include "mbk/measure/explore/measure_plateaus.h"
@@ -32,11 +33,12 @@ struct ExploreOptions {
   double force_delay = 0.0;                        ///< by which the force was read late, undone first [s]
   preprocess::RotationVector force_rotation = {};  ///< by which the force is turned first [rad]
   std::optional<ExploredSignals> signals;          ///< absent: from the position to −F
-  std::optional<ExplorationPart> only;             ///< absent: every part
+  std::optional<ExplorationPart> only;             ///< absent: every part but EMG
   explore::FrequencyResponseOptions frequency_response;
   explore::ImpulseResponseOptions impulse_response;
-  explore::PlateauOptions plateau;      ///< of a reference of ramps and holds
-  explore::ReachOptions reaches;        ///< of recordings of reaches
+  explore::PlateauOptions plateau;  ///< of a reference of ramps and holds
+  explore::ReachOptions reaches;    ///< of recordings of reaches
+  explore::EmgOptions emg;
   std::string schedule;                 ///< channel that M, B and K are followed over; empty: time
   std::string schedule_name;            ///< what it is called in the result; empty: as the channel
   std::optional<std::string> align;     ///< event, or "reference", since which time counts; absent: the first sample

@@ -7,6 +7,7 @@
 
 #include "mbk/base/core/words.h"
 #include "mbk/model/trial/after_onset_estimate.h"
+#include "mbk/model/trial/emg_estimate.h"
 #include "mbk/model/trial/exploration_trial.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
 #include "mbk/model/trial/impulse_response_estimate.h"
@@ -25,7 +26,8 @@ enum class ExplorationPart {
   reflex,
   time_course,
   ramp_and_hold,
-  servo_displacement
+  servo_displacement,
+  emg
 };
 
 [[nodiscard]] constexpr auto word_table(ExplorationPart) {
@@ -35,7 +37,8 @@ enum class ExplorationPart {
                                                {reflex, "reflex"},
                                                {time_course, "time-course"},
                                                {ramp_and_hold, "ramp-and-hold"},
-                                               {servo_displacement, "servo-displacement"}});
+                                               {servo_displacement, "servo-displacement"},
+                                               {emg, "emg"}});
 }
 
 /// An explored recording.
@@ -60,6 +63,7 @@ struct Exploration {
   std::optional<ReachStiffness> reach_stiffness;
   std::optional<TimeCourseEstimate> time_course;
   std::optional<AfterOnsetEstimate> after_onset;  ///< only if requested
+  std::optional<EmgEstimate> emg;                 ///< only if requested
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
   bool usable = true;

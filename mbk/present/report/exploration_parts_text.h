@@ -3,6 +3,7 @@
 #include <string>
 
 #include "mbk/model/trial/after_onset_estimate.h"
+#include "mbk/model/trial/emg_estimate.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
 #include "mbk/model/trial/impulse_response_estimate.h"
 #include "mbk/model/trial/parallel_cascade_estimate.h"
@@ -23,5 +24,6 @@ namespace mbk::report {
 [[nodiscard]] std::string reach_stiffness_text(const ReachStiffness& found, Motion motion);
 [[nodiscard]] std::string time_course_text(const TimeCourseEstimate& found, Motion motion);
 [[nodiscard]] std::string after_onset_text(const AfterOnsetEstimate& found, Motion motion);
+[[nodiscard]] std::string emg_text(const EmgEstimate& found, Motion motion);
 
 }  // namespace mbk::report

@@ -1,5 +1,10 @@
 #include "mbk/present/request/explore_request.h"
 
+#include <charconv>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "mbk/base/core/units.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/present/request/signal_names.h"
@@ -85,6 +90,85 @@ OptionTable<measurement::ExploreOptions> course_table() {
   return table;
 }
 
+/// A text that passed positive() or not_negative(), or an untested one.
+std::optional<double> emg_number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// @fails  usage: a band that is not two numbers; a value of --mvc that is not MUSCLE=V.
+Result<void> set_emg(const ExploreRequest& request, explore::EmgOptions& emg) {
+  if (!request.emg_band.empty()) {
+    if (request.emg_band.size() != 2) return bad_usage("--emg-band needs two frequencies, such as 20,450");
+    emg.processing.low_hz = emg_number(request.emg_band[0]).value_or(0.0);
+    emg.processing.high_hz = emg_number(request.emg_band[1]).value_or(0.0);
+  }
+  if (!request.emg_windows.empty()) {
+    emg.edges_s.clear();
+    for (const std::string& text : request.emg_windows) {
+      emg.edges_s.push_back(emg_number(text).value_or(0.0) / kMilliseconds);
+    }
+  }
+  for (const std::string& text : request.mvc) {
+    const auto at = text.find('=');
+    const auto volts = at == std::string::npos ? std::nullopt : emg_number(text.substr(at + 1));
+    if (!volts || !(*volts > 0.0)) {
+      return bad_usage("--mvc: " + quoted(text) + " is not MUSCLE=V with a positive voltage",
+                       "for example --mvc biceps=0.0012");
+    }
+    const std::string muscle = text.substr(0, at);
+    emg.mvc[muscle.starts_with("emg_") ? muscle : "emg_" + muscle] = *volts;
+  }
+  if (emg.processing.envelope_rms_s > 0.0) emg.processing.envelope_hz = 0.0;
+  return {};
+}
+
+OptionTable<ExploreRequest> emg_table() {
+  OptionTable<ExploreRequest> table;
+  const auto processing = [](auto& request) -> auto& {
+    return request.options.emg.processing;
+  };
+  table.group("EMG (--only emg)")
+      .add({.name = "--emg-band",
+            .value = "LOW,HIGH",
+            .help = "band of the EMG, in Hz; zero-phase Butterworth filter of order 4 (default: 20,450)",
+            .check = positive(),
+            .takes_several = true},
+           &ExploreRequest::emg_band)
+      .add(
+          {"--emg-envelope", "HZ", "cut-off of the zero-phase low-pass for the envelope shown, in Hz (default: 50)",
+           positive()},
+          [processing](auto& request) -> auto& { return processing(request).envelope_hz; })
+      .add(
+          {.name = "--emg-rms",
+           .value = "MS",
+           .help = "window of a moving RMS for the envelope, in ms, instead of the low-pass",
+           .check = positive(),
+           .excludes = "--emg-envelope"},
+          [processing](auto& request) -> auto& { return processing(request).envelope_rms_s; }, kMilliseconds)
+      .add({.name = "--emg-windows",
+            .value = "MS,MS,...",
+            .help = "edges of the windows after the onset of a perturbation, in ms (default: 20,50,100,150: short "
+                    "latency, long latency, voluntary)",
+            .check = not_negative(),
+            .takes_several = true},
+           &ExploreRequest::emg_windows)
+      .add(
+          {"--emg-background", "MS", "duration before the onset that responses are compared with, in ms (default: 100)",
+           positive()},
+          [](auto& request) -> auto& { return request.options.emg.background_s; }, kMilliseconds)
+      .add({.name = "--mvc",
+            .value = "MUSCLE=V,...",
+            .help = "mean rectified EMG of each muscle at maximal voluntary contraction, in V: the background is also "
+                    "given as a share of it",
+            .check = not_empty(),
+            .takes_several = true},
+           &ExploreRequest::mvc);
+  return table;
+}
+
 }  // namespace
 
 const OptionTable<ExploreRequest>& explore_table() {
@@ -113,7 +197,7 @@ const OptionTable<ExploreRequest>& explore_table() {
             force_delay_option(), [](auto& request) -> auto& { return request.options.force_delay; }, kMilliseconds)
         .add_row(force_rotation_row<ExploreRequest>(kWindowGroup))
         .add(
-            {"--only", "", "compute only this part (default: all)"},
+            {"--only", "", "compute only this part (default: all but emg)"},
             [](auto& request) -> auto& { return request.options.only; })
         .include(
             response_table(), [](auto& request) -> auto& { return request.options.frequency_response; })
@@ -132,7 +216,9 @@ const OptionTable<ExploreRequest>& explore_table() {
                  "event that time is counted from in each repetition (default: reference, the onsets of the reference)",
              .check = not_empty(),
              .excludes = "--schedule"},
-            [](auto& request) -> auto& { return request.options.align; });
+            [](auto& request) -> auto& { return request.options.align; })
+        .include(
+            emg_table(), [](auto& request) -> auto& { return request; });
     return table;
   }();
   return kTable;
@@ -144,6 +230,7 @@ Result<measurement::ExploreOptions> explore_options(ExploreRequest& request) {
   options.preprocess.axes = request.reading.options.axes;
   options.reaches.from_s = options.plateau.from_s;
   options.reaches.to_s = options.plateau.to_s;
+  MBK_TRY(set_emg(request, options.emg));
   MBK_TRY(name_signals(request, options));
   if (options.schedule == "schedule") options.schedule_name = shown_name(request.schedule);
   return options;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mbk/base/core/option_table.h"
 #include "mbk/measure/measurement/explore.h"
@@ -15,6 +16,9 @@ struct ExploreRequest {
   SensorRequest sensor;
   measurement::ExploreOptions options;
   std::string schedule, input, output, reference;  ///< as signals are named (signal_names.h)
+  std::vector<std::string> emg_band;               ///< low and high [Hz]
+  std::vector<std::string> emg_windows;            ///< rising times [ms]
+  std::vector<std::string> mvc;                    ///< "biceps=0.0012" [V]
 };
 
 /// Every option that a result depends on, but FILE.
