@@ -258,7 +258,9 @@ Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings, co
 
 Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options) {
   const bool reaches = !recordings.empty() && are_reaches(recordings, options);
-  const auto named = MBK_TRY(reaches ? whole_trials(recordings, options) : named_trials(recordings, options));
+  const bool stretches = options.only == ExplorationPart::stretch;
+  const auto named =
+      MBK_TRY(reaches || stretches ? whole_trials(recordings, options) : named_trials(recordings, options));
   const std::vector<ExplorationTrial>& trials = named;
   Exploration found;
   for (const ExplorationTrial& trial : trials) {
@@ -272,6 +274,13 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
   found.other_signals = options.signals.has_value();
   if (reaches) {
     MBK_TRY(add_reaches(trials, options, found));
+    return found;
+  }
+  if (stretches) {
+    auto stretch = explore::stretch(trials, options.stretch, found.warnings);
+    if (!stretch) return tl::unexpected(stretch.error().in("stretches"));
+    found.usable = stretch->usable;
+    found.stretch = std::move(*stretch);
     return found;
   }
   if (options.after_onset_s) {

@@ -11,6 +11,7 @@
 #include "mbk/measure/explore/impulse_response.h"
 #include "mbk/measure/explore/measure_plateaus.h"
 #include "mbk/measure/explore/measure_reaches.h"
+#include "mbk/measure/explore/stretch.h"
 #include "mbk/measure/preprocess/force_rotation.h"
 #include "mbk/measure/preprocess/options.h"
 #include "mbk/model/trial/exploration.h"
@@ -37,6 +38,7 @@ struct ExploreOptions {
   explore::ImpulseResponseOptions impulse_response;
   explore::PlateauOptions plateau;      ///< of a reference of ramps and holds
   explore::ReachOptions reaches;        ///< of recordings of reaches
+  explore::StretchOptions stretch;      ///< of stretches at constant velocity
   std::string schedule;                 ///< channel that M, B and K are followed over; empty: time
   std::string schedule_name;            ///< what it is called in the result; empty: as the channel
   std::optional<std::string> align;     ///< event, or "reference", since which time counts; absent: the first sample

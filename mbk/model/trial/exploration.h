@@ -13,6 +13,7 @@
 #include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/plateau_stiffness.h"
 #include "mbk/model/trial/reach_stiffness.h"
+#include "mbk/model/trial/stretch_estimate.h"
 #include "mbk/model/trial/time_course_estimate.h"
 #include "mbk/model/trial/warning.h"
 
@@ -25,7 +26,8 @@ enum class ExplorationPart {
   reflex,
   time_course,
   ramp_and_hold,
-  servo_displacement
+  servo_displacement,
+  stretch  ///< only if requested
 };
 
 [[nodiscard]] constexpr auto word_table(ExplorationPart) {
@@ -35,7 +37,8 @@ enum class ExplorationPart {
                                                {reflex, "reflex"},
                                                {time_course, "time-course"},
                                                {ramp_and_hold, "ramp-and-hold"},
-                                               {servo_displacement, "servo-displacement"}});
+                                               {servo_displacement, "servo-displacement"},
+                                               {stretch, "stretch"}});
 }
 
 /// An explored recording.
@@ -60,6 +63,7 @@ struct Exploration {
   std::optional<ReachStiffness> reach_stiffness;
   std::optional<TimeCourseEstimate> time_course;
   std::optional<AfterOnsetEstimate> after_onset;  ///< only if requested
+  std::optional<StretchEstimate> stretch;         ///< only if requested
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
   bool usable = true;

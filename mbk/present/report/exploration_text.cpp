@@ -24,6 +24,7 @@ std::string exploration_text(const Exploration& found) {
   if (found.reach_stiffness) text += "\n" + reach_stiffness_text(*found.reach_stiffness, found.motion);
   if (found.time_course) text += "\n" + time_course_text(*found.time_course, found.motion);
   if (found.after_onset) text += "\n" + after_onset_text(*found.after_onset, found.motion);
+  if (found.stretch) text += "\n" + stretch_text(*found.stretch, found.motion);
   for (const std::string& note : found.notes) text += paragraph("  ", note);
   if (!found.warnings.empty()) text += "\n" + warnings_text(found.warnings);
   return text;

@@ -1,5 +1,8 @@
 #include "mbk/present/request/explore_request.h"
 
+#include <string>
+#include <vector>
+
 #include "mbk/base/core/units.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/present/request/signal_names.h"
@@ -85,6 +88,50 @@ OptionTable<measurement::ExploreOptions> course_table() {
   return table;
 }
 
+OptionTable<explore::StretchOptions> stretch_table() {
+  using Options = explore::StretchOptions;
+  OptionTable<Options> table;
+  table.group("Stretches at constant velocity")
+      .add({"--stretch-from", "DEG",
+            "smallest analysed angle, in degrees (default: where every stretch has constant velocity)",
+            number_within(720.0)},
+           &Options::from, kDegrees)
+      .add({"--stretch-to", "DEG", "largest analysed angle, in degrees (default: likewise)", number_within(720.0)},
+           &Options::to, kDegrees)
+      .add({"--stretch-inertia", "KGM2", "inertia whose torque is subtracted, in kg m2 (default: 0)", not_negative()},
+           &Options::inertia)
+      .add({"--stretch-viscosity", "NMS",
+            "largest slope of torque over speed that counts as passive, in N m s/rad, such as the upper limit of the "
+            "study's controls (default: not used)",
+            positive()},
+           &Options::viscosity);
+  return table;
+}
+
+/// --protocol, with the word "stretch" for --only stretch.
+OptionTable<ExploreRequest>::Row protocol_row() {
+  OptionTable<ExploreRequest> one;
+  one.add(
+      protocol_option(kWindowGroup), [](auto& request) -> auto& { return request.options.preprocess.protocol; });
+  auto row = one.rows().front();
+  const std::string stretch(word_of(ExplorationPart::stretch));
+  std::vector<std::string> words = row.facts.check.words;
+  words.push_back(stretch);
+  row.facts.value += "|" + stretch;
+  row.facts.help =
+      "how the limb was perturbed; stretch is the same as --only stretch; auto decides from the reference "
+      "and reports its choice (default: auto)";
+  row.facts.check = one_of(words);
+  row.set = [set = row.set, stretch](ExploreRequest& request, const std::vector<std::string>& texts) {
+    if (texts.back() == stretch) {
+      request.options.only = ExplorationPart::stretch;
+    } else {
+      set(request, texts);
+    }
+  };
+  return row;
+}
+
 }  // namespace
 
 const OptionTable<ExploreRequest>& explore_table() {
@@ -103,8 +150,7 @@ const OptionTable<ExploreRequest>& explore_table() {
         .add({"--reference", "NAME", "the signal that drives both, named likewise", not_empty()},
              &ExploreRequest::reference)
         .include(sensor_table(), &ExploreRequest::sensor)
-        .add(
-            protocol_option(kWindowGroup), [](auto& request) -> auto& { return request.options.preprocess.protocol; })
+        .add_row(protocol_row())
         .include(
             window_table(), [](auto& request) -> auto& { return request.options.preprocess.window; })
         .add(
@@ -118,6 +164,8 @@ const OptionTable<ExploreRequest>& explore_table() {
         .include(
             response_table(), [](auto& request) -> auto& { return request.options.frequency_response; })
         .include(course_table(), options)
+        .include(
+            stretch_table(), [](auto& request) -> auto& { return request.options.stretch; })
         .group(in_time)
         .add({"--schedule", "NAME",
               "follow M, B and K over this channel, column, row or variable, such as an angle or a co-contraction "

@@ -13,5 +13,6 @@ void describe(document::Fields<PlateauStiffness>& fields);
 void describe(document::Fields<ReachStiffness>& fields);
 void describe(document::Fields<TimeCourseEstimate>& fields);
 void describe(document::Fields<AfterOnsetEstimate>& fields);
+void describe(document::Fields<StretchEstimate>& fields);
 
 }  // namespace mbk
