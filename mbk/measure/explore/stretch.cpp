@@ -13,7 +13,6 @@
 #include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/measure/explore/spline_basis.h"
 
 namespace mbk::explore {
 namespace stretches {
@@ -24,11 +23,10 @@ constexpr double kPlateauShare = 0.4;  ///< of the travel of a movement, at leas
 constexpr double kMinTravel = 0.15;    ///< of the range of the recording, at least
 constexpr double kMinPlateau = 0.05;   ///< [s]
 constexpr double kGap = 0.03;          ///< longest time off the plateau that does not end it [s]
-constexpr double kSameSpeed = 1.15;    ///< ratio within which speeds are repetitions
+constexpr double kSameSpeed = 1.1;     ///< ratio within which speeds are repetitions
 constexpr double kMinRatio = 2.0;      ///< of the largest to the smallest speed, for a verdict
 constexpr double kMinRange = 0.1;      ///< of the smallest travel, that all stretches have in common
-constexpr Index kSamplesPerBin = 3;
-constexpr Index kCells = 4;  ///< of the splines of the passive curve
+constexpr Index kSamplesPerBin = 3, kMaxBins = 45;
 constexpr double kOneSided = 0.975, kFamily = 0.05;
 constexpr double kOtherAxis = 0.1;  ///< motion of another axis relative to that of the stretched one
 
@@ -235,11 +233,11 @@ struct RiseShapes {
 
 /// @param along  centres of the bins in the direction of the stretch, increasing
 RiseShapes rise_shapes(const Vector& along) {
-  const Index bins = along.size(), places = 4 * bins;
-  const double bin = along[1] - along[0], begin = along[0] - 0.5 * bin, step = 0.25 * bin;
+  const Index bins = along.size(), places = 2 * bins;
+  const double bin = along[1] - along[0], begin = along[0] - 0.5 * bin, step = 0.5 * bin;
   std::vector<std::pair<double, double>> candidates;
-  for (Index i = 4; i < places - 8; ++i) {
-    for (Index j = i + 8; j <= places; ++j) {
+  for (Index i = 2; i < places - 4; ++i) {
+    for (Index j = i + 4; j <= places; ++j) {
       candidates.emplace_back(begin + step * static_cast<double>(i), begin + step * static_cast<double>(j));
     }
   }
@@ -260,16 +258,6 @@ double rise_start(const RiseShapes& shapes, const Vector& excess) {
   return shapes.start[best];
 }
 
-/// Values of all bins → their smooth curve.
-Result<Matrix> smoother(Index bins) {
-  const SplineBasis basis = even_splines(kCells);
-  Vector places(bins);
-  for (Index i = 0; i < bins; ++i) places[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(bins);
-  const Matrix Z = spline_values(basis, places);
-  const auto fit = MBK_TRY(numeric::fit_least_squares(Z, Matrix::Identity(bins, bins)));
-  return Matrix(Z * fit.coefficients);
-}
-
 /// All that one direction is estimated from.
 struct Side {
   int direction = 1;
@@ -277,7 +265,6 @@ struct Side {
   std::vector<double> speed;  ///< of the groups, increasing
   Interval range;
   Index bins = 0;
-  Matrix smooth;
   [[nodiscard]] Vector centres() const {
     Vector at(bins);
     for (Index i = 0; i < bins; ++i) {
@@ -300,7 +287,7 @@ struct Side {
       sum += one->torque;
       ++count;
     }
-    return smooth * (sum / static_cast<double>(count));
+    return sum / static_cast<double>(count);
   }
 };
 
@@ -310,8 +297,9 @@ bool fill_bins(const Signal& signal, const Move& move, bool whole, const Side& s
   Vector sum = Vector::Zero(side.bins), count = Vector::Zero(side.bins);
   const double per_bin = static_cast<double>(side.bins) / (side.range.second - side.range.first);
   for (Index i = from; i < to; ++i) {
-    const auto bin = static_cast<Index>(std::floor((signal.position[i] - side.range.first) * per_bin));
-    if (bin < 0 || bin >= side.bins) continue;
+    if (signal.position[i] < side.range.first || signal.position[i] > side.range.second) continue;
+    const auto place = static_cast<Index>((signal.position[i] - side.range.first) * per_bin);
+    const Index bin = std::min(place, side.bins - 1);
     sum[bin] += direction * signal.torque[i];
     count[bin] += 1.0;
   }
@@ -325,8 +313,8 @@ bool fill_bins(const Signal& signal, const Move& move, bool whole, const Side& s
 }
 
 /// Common range, bins and courses of the movements in one direction; no courses where there is nothing in common.
-Result<Side> side_of(int direction, const std::vector<Move>& moves, const std::vector<Signal>& signals,
-                     const StretchOptions& options) {
+Side side_of(int direction, const std::vector<Move>& moves, const std::vector<Signal>& signals,
+             const StretchOptions& options) {
   Side side;
   side.direction = direction;
   const bool whole = options.from.has_value() || options.to.has_value();
@@ -350,10 +338,8 @@ Result<Side> side_of(int direction, const std::vector<Move>& moves, const std::v
     fastest = std::max(fastest, move.speed * signals[static_cast<std::size_t>(move.recording)].sample_time);
   }
   const auto bins = static_cast<Index>((high - low) / (static_cast<double>(kSamplesPerBin) * fastest));
-  side.bins = 3 * (std::min<Index>(bins, 30) / 3);
+  side.bins = 3 * (std::min(bins, kMaxBins) / 3);
   if (side.bins < 9) return side;
-  auto smooth = MBK_TRY(smoother(side.bins));
-  side.smooth = std::move(smooth);
   std::ranges::sort(here, {}, &Move::speed);
   double first = 0.0;
   for (const Move& move : here) {
@@ -690,7 +676,7 @@ Result<StretchEstimate> stretch(std::span<const ExplorationTrial> trials, const 
     found.usable = false;
   }
   for (const int direction : {moves.front().direction, -moves.front().direction}) {
-    const auto side = MBK_TRY(side_of(direction, moves, signals, options));
+    const Side side = side_of(direction, moves, signals, options);
     if (side.courses.size() < 2) {
       if (std::ranges::count(moves, direction, &Move::direction) > 1) {
         found.limits.push_back(fmt::format("movements with {} angle have no angles in common at constant velocity",

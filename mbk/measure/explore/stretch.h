@@ -21,8 +21,8 @@ struct StretchOptions {
 ///
 /// A movement is a run of one sign of the velocity; its plateau is where the speed is within 10 % of its usual one, and
 /// holds at least 40 % of its travel. The resisting torque of direction d is r = −d F, F of the hand on the robot.
-/// The passive curve is r over angle of the slowest speed, smoothed by splines: gravity, elasticity and offset. The
-/// excess of other speeds is r less that.
+/// The passive curve is the mean r of the slowest speed in 45 bins of angle or fewer: gravity, elasticity and offset.
+/// The excess of other speeds is r less that.
 ///
 /// Slope: mean r regressed on speed. Its interval is Student's, by the scatter between repetitions at each speed
 /// (Welch–Satterthwaite); where each recording holds one speed only, their offsets count, so that the interval is by

@@ -58,7 +58,7 @@ struct StretchDirection {
   int direction = 1;                 ///< 1: the position increases, −1: it decreases
   Interval range;                    ///< analysed positions, common to all speeds [rad]
   Vector angle;                      ///< centres of the bins in it, increasing [rad]
-  Vector passive;                    ///< torque of the slowest stretches by angle, smoothed [N·m]
+  Vector passive;                    ///< mean torque of the slowest stretches by angle [N·m]
   std::vector<StretchSpeed> speeds;  ///< increasing
   StretchValue slope;                ///< of the mean resisting torque over speed [N·m·s/rad]
   StretchValue rise;                 ///< the same of last third less first third of the stretch [N·m·s/rad]

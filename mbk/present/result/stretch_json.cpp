@@ -44,7 +44,7 @@ void describe(Fields<StretchDirection>& fields) {
   fields.add("range", &StretchDirection::range, "analysed positions, common to all stretches [rad or m]");
   fields.add_rounded("angle", &StretchDirection::angle, kDigits, "centres of the bins of the curves [rad or m]");
   fields.add_rounded("passive", &StretchDirection::passive, kDigits,
-                     "resisting torque of the slowest stretches, smoothed [N·m or N]");
+                     "mean resisting torque of the slowest stretches [N·m or N]");
   fields.add("speeds", &StretchDirection::speeds, "increasing");
   fields.add("slope", &StretchDirection::slope, "of the mean resisting torque over speed [N·m·s/rad or N·s/m]");
   fields.add("rise", &StretchDirection::rise, "slope over speed of the torque in the last less the first third");
