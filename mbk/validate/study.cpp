@@ -32,6 +32,7 @@ constexpr std::array kOfFrequencyResponse = {JudgedShare{kHardlyEver, 1.0}, Judg
 constexpr std::array kOfDisplacements = {JudgedShare{kNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfEmg = {JudgedShare{kNominal, 95.0}, JudgedShare{kHardlyEver, 2.5},
                                JudgedShare{kNearlyAlways, 99.0}};
+constexpr std::array kOfStretch = {JudgedShare{kNominal, 95.0}, JudgedShare{kHardlyEver, 1.0}};
 constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
 constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfReliability = {JudgedShare{kNominal, 95.0}, JudgedShare{kFalsePositives, 5.0}};
@@ -66,6 +67,8 @@ std::span<const Study> studies() {
             ramp_and_hold_study},
       Study{"servo-displacement", "stiffness of a reaching hand, displaced from its predicted path", kOfDisplacements,
             2, servo_displacement_study},
+      Study{"stretch", "slope over speed and angle of catch of stretched elbows, with a reflex or not", kOfStretch, 2,
+            stretch_study},
       Study{"one-dimensional", "no linear model describes a rigid arm along one axis", {}, 4, one_dimensional_study},
       Study{"reflex", "impulse response, intrinsic and reflex force of limbs that have them or not", kOfReflex, 2,
             reflex_study},

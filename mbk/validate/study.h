@@ -132,6 +132,11 @@ inline constexpr int kTrialsWithoutController = 16;
 /// its norm at most, a bias below 1 % of the largest entry, coverage of 92 to 98 %.
 [[nodiscard]] Result<ValidationTable> ramp_and_hold_study(const StudyOptions& options);
 
+/// Stretches at five constant velocities, five times each (measure/explore/stretch.h), of a simulated relaxed elbow and
+/// of one with a stretch reflex: coverage of the slope over speed and of the angle of catch, and how often a healthy
+/// limb is called velocity-dependent. A run is one limb of each kind. Expected: coverage of 92 to 98 %, at most 5 %.
+[[nodiscard]] Result<ValidationTable> stretch_study(const StudyOptions& options);
+
 /// Stiffness of a hand that reaches, displaced by 8 mm relative to a prediction of its own way (measure/explore), of
 /// simulated reaches that differ in duration, length, bend and target (simulated_reaches.h): bias and coverage of each
 /// entry of K with the prediction from the reach's own past, and for comparison with the mean of the undisturbed

@@ -34,7 +34,7 @@ TYPED = {  # what has been typed → what is offered
     ("validate", ""): ["after-onset", "all", "change", "closed-loop", "coverage", "emg", "faults", "frequency-response", "live-estimate",
                        "misspecification", "one-dimensional", "participant", "passivity", "ramp-and-hold",
                        "recorded-reliability", "recovery", "reflex", "reliability", "robot", "servo-displacement", "spatial",
-                       "springs", "teleoperation", "transfer-function", "virtual-sensor"],
+                       "springs", "stretch", "teleoperation", "transfer-function", "virtual-sensor"],
     ("rep",): ["reproduce"],
     ("reproduce", "--wi"): ["--without-printed"],
     ("reproduce", "--on"): ["--only"],

@@ -291,8 +291,9 @@ Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings, co
 
 Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options) {
   const bool reaches = !recordings.empty() && are_reaches(recordings, options);
-  const bool whole = reaches || options.only == ExplorationPart::emg;
-  const auto named = MBK_TRY(whole ? whole_trials(recordings, options) : named_trials(recordings, options));
+  const bool emg = options.only == ExplorationPart::emg, stretches = options.only == ExplorationPart::stretch;
+  const auto named =
+      MBK_TRY(reaches || emg || stretches ? whole_trials(recordings, options) : named_trials(recordings, options));
   const std::vector<ExplorationTrial>& trials = named;
   Exploration found;
   for (const ExplorationTrial& trial : trials) {
@@ -308,8 +309,15 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
     MBK_TRY(add_reaches(trials, options, found));
     return found;
   }
-  if (options.only == ExplorationPart::emg) {
+  if (emg) {
     MBK_TRY(add_emg(recordings, trials, options, found));
+    return found;
+  }
+  if (stretches) {
+    auto stretch = explore::stretch(trials, options.stretch, found.warnings);
+    if (!stretch) return tl::unexpected(stretch.error().in("stretches"));
+    found.usable = stretch->usable;
+    found.stretch = std::move(*stretch);
     return found;
   }
   if (options.after_onset_s) {

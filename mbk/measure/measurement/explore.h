@@ -12,6 +12,7 @@
 #include "mbk/measure/explore/impulse_response.h"
 #include "mbk/measure/explore/measure_plateaus.h"
 #include "mbk/measure/explore/measure_reaches.h"
+#include "mbk/measure/explore/stretch.h"
 #include "mbk/measure/preprocess/force_rotation.h"
 #include "mbk/measure/preprocess/options.h"
 #include "mbk/model/trial/exploration.h"
@@ -33,12 +34,13 @@ struct ExploreOptions {
   double force_delay = 0.0;                        ///< by which the force was read late, undone first [s]
   preprocess::RotationVector force_rotation = {};  ///< by which the force is turned first [rad]
   std::optional<ExploredSignals> signals;          ///< absent: from the position to −F
-  std::optional<ExplorationPart> only;             ///< absent: every part but EMG
+  std::optional<ExplorationPart> only;             ///< absent: every part but emg and stretch
   explore::FrequencyResponseOptions frequency_response;
   explore::ImpulseResponseOptions impulse_response;
   explore::PlateauOptions plateau;  ///< of a reference of ramps and holds
   explore::ReachOptions reaches;    ///< of recordings of reaches
   explore::EmgOptions emg;
+  explore::StretchOptions stretch;      ///< of stretches at constant velocity
   std::string schedule;                 ///< channel that M, B and K are followed over; empty: time
   std::string schedule_name;            ///< what it is called in the result; empty: as the channel
   std::optional<std::string> align;     ///< event, or "reference", since which time counts; absent: the first sample

@@ -14,6 +14,7 @@
 #include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/plateau_stiffness.h"
 #include "mbk/model/trial/reach_stiffness.h"
+#include "mbk/model/trial/stretch_estimate.h"
 #include "mbk/model/trial/time_course_estimate.h"
 #include "mbk/model/trial/warning.h"
 
@@ -27,7 +28,8 @@ enum class ExplorationPart {
   time_course,
   ramp_and_hold,
   servo_displacement,
-  emg
+  emg,     ///< only if requested
+  stretch  ///< only if requested
 };
 
 [[nodiscard]] constexpr auto word_table(ExplorationPart) {
@@ -38,7 +40,8 @@ enum class ExplorationPart {
                                                {time_course, "time-course"},
                                                {ramp_and_hold, "ramp-and-hold"},
                                                {servo_displacement, "servo-displacement"},
-                                               {emg, "emg"}});
+                                               {emg, "emg"},
+                                               {stretch, "stretch"}});
 }
 
 /// An explored recording.
@@ -64,6 +67,7 @@ struct Exploration {
   std::optional<TimeCourseEstimate> time_course;
   std::optional<AfterOnsetEstimate> after_onset;  ///< only if requested
   std::optional<EmgEstimate> emg;                 ///< only if requested
+  std::optional<StretchEstimate> stretch;         ///< only if requested
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
   bool usable = true;

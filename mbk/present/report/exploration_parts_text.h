@@ -10,6 +10,7 @@
 #include "mbk/model/trial/plateau_stiffness.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/reach_stiffness.h"
+#include "mbk/model/trial/stretch_estimate.h"
 #include "mbk/model/trial/time_course_estimate.h"
 
 /// @file
@@ -25,5 +26,6 @@ namespace mbk::report {
 [[nodiscard]] std::string time_course_text(const TimeCourseEstimate& found, Motion motion);
 [[nodiscard]] std::string after_onset_text(const AfterOnsetEstimate& found, Motion motion);
 [[nodiscard]] std::string emg_text(const EmgEstimate& found, Motion motion);
+[[nodiscard]] std::string stretch_text(const StretchEstimate& found, Motion motion);
 
 }  // namespace mbk::report

@@ -25,6 +25,7 @@ std::string exploration_text(const Exploration& found) {
   if (found.time_course) text += "\n" + time_course_text(*found.time_course, found.motion);
   if (found.after_onset) text += "\n" + after_onset_text(*found.after_onset, found.motion);
   if (found.emg) text += "\n" + emg_text(*found.emg, found.motion);
+  if (found.stretch) text += "\n" + stretch_text(*found.stretch, found.motion);
   for (const std::string& note : found.notes) text += paragraph("  ", note);
   if (!found.warnings.empty()) text += "\n" + warnings_text(found.warnings);
   return text;

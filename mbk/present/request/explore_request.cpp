@@ -169,6 +169,50 @@ OptionTable<ExploreRequest> emg_table() {
   return table;
 }
 
+OptionTable<explore::StretchOptions> stretch_table() {
+  using Options = explore::StretchOptions;
+  OptionTable<Options> table;
+  table.group("Stretches at constant velocity")
+      .add({"--stretch-from", "DEG",
+            "smallest analysed angle, in degrees (default: where every stretch has constant velocity)",
+            number_within(720.0)},
+           &Options::from, kDegrees)
+      .add({"--stretch-to", "DEG", "largest analysed angle, in degrees (default: likewise)", number_within(720.0)},
+           &Options::to, kDegrees)
+      .add({"--stretch-inertia", "KGM2", "inertia whose torque is subtracted, in kg m2 (default: 0)", not_negative()},
+           &Options::inertia)
+      .add({"--stretch-viscosity", "NMS",
+            "largest slope of torque over speed that counts as passive, in N m s/rad, such as the upper limit of the "
+            "study's controls (default: not used)",
+            positive()},
+           &Options::viscosity);
+  return table;
+}
+
+/// --protocol, with the word "stretch" for --only stretch.
+OptionTable<ExploreRequest>::Row protocol_row() {
+  OptionTable<ExploreRequest> one;
+  one.add(
+      protocol_option(kWindowGroup), [](auto& request) -> auto& { return request.options.preprocess.protocol; });
+  auto row = one.rows().front();
+  const std::string stretch(word_of(ExplorationPart::stretch));
+  std::vector<std::string> words = row.facts.check.words;
+  words.push_back(stretch);
+  row.facts.value += "|" + stretch;
+  row.facts.help =
+      "how the limb was perturbed; stretch is the same as --only stretch; auto decides from the reference "
+      "and reports its choice (default: auto)";
+  row.facts.check = one_of(words);
+  row.set = [set = row.set, stretch](ExploreRequest& request, const std::vector<std::string>& texts) {
+    if (texts.back() == stretch) {
+      request.options.only = ExplorationPart::stretch;
+    } else {
+      set(request, texts);
+    }
+  };
+  return row;
+}
+
 }  // namespace
 
 const OptionTable<ExploreRequest>& explore_table() {
@@ -187,8 +231,7 @@ const OptionTable<ExploreRequest>& explore_table() {
         .add({"--reference", "NAME", "the signal that drives both, named likewise", not_empty()},
              &ExploreRequest::reference)
         .include(sensor_table(), &ExploreRequest::sensor)
-        .add(
-            protocol_option(kWindowGroup), [](auto& request) -> auto& { return request.options.preprocess.protocol; })
+        .add_row(protocol_row())
         .include(
             window_table(), [](auto& request) -> auto& { return request.options.preprocess.window; })
         .add(
@@ -197,11 +240,13 @@ const OptionTable<ExploreRequest>& explore_table() {
             force_delay_option(), [](auto& request) -> auto& { return request.options.force_delay; }, kMilliseconds)
         .add_row(force_rotation_row<ExploreRequest>(kWindowGroup))
         .add(
-            {"--only", "", "compute only this part (default: all but emg)"},
+            {"--only", "", "compute only this part (default: all but emg and stretch)"},
             [](auto& request) -> auto& { return request.options.only; })
         .include(
             response_table(), [](auto& request) -> auto& { return request.options.frequency_response; })
         .include(course_table(), options)
+        .include(
+            stretch_table(), [](auto& request) -> auto& { return request.options.stretch; })
         .group(in_time)
         .add({"--schedule", "NAME",
               "follow M, B and K over this channel, column, row or variable, such as an angle or a co-contraction "
@@ -231,6 +276,7 @@ Result<measurement::ExploreOptions> explore_options(ExploreRequest& request) {
   options.reaches.from_s = options.plateau.from_s;
   options.reaches.to_s = options.plateau.to_s;
   MBK_TRY(set_emg(request, options.emg));
+  if (options.only == ExplorationPart::emg) request.reading.options.emg = recording::EmgReading::all;
   MBK_TRY(name_signals(request, options));
   if (options.schedule == "schedule") options.schedule_name = shown_name(request.schedule);
   return options;

@@ -43,6 +43,7 @@ void describe(Fields<Exploration>& fields) {
   fields.add("time_course", &Exploration::time_course);
   fields.add("after_onset", &Exploration::after_onset);
   fields.add("emg", &Exploration::emg);
+  fields.add("stretch", &Exploration::stretch);
   fields.add("notes", &Exploration::notes);
   fields.add("warnings", &Exploration::warnings);
   fields.add("usable", &Exploration::usable);

@@ -14,5 +14,6 @@ void describe(document::Fields<ReachStiffness>& fields);
 void describe(document::Fields<TimeCourseEstimate>& fields);
 void describe(document::Fields<AfterOnsetEstimate>& fields);
 void describe(document::Fields<EmgEstimate>& fields);
+void describe(document::Fields<StretchEstimate>& fields);
 
 }  // namespace mbk
