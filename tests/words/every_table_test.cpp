@@ -77,15 +77,16 @@ std::vector<Table> tables_of(std::type_identity<std::tuple<Enums...>> /*of*/) {
 
 using Enumerations =
     std::tuple<dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal, perturbation::MultisinePlan::Phases,
-               perturbation::MultisinePlan::Axes, AccelerationSource, AdmittanceOutput, Agreement, ArmPosture::Of,
-               ChartSeries::Drawn, DelayedResponse, Exhibit::Kind, ForceSource, FrequencyResponseMethod, InputHold,
-               InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom, Procedure, Protocol, Provenance, Readers,
-               ReferenceQuantity, RobotMethod, SensorWarningCode, StabilityCondition, StabilityVerdict, Structure,
-               TransferFunctionMethod, Verdict, WarningCode, journal::Ending::How, recording::Format,
-               calibration::SensorFrame, teleop::Architecture, teleop::Form, teleop::SimulatedArm::Kind, control::Phase,
-               device::Motors, device::Wiring::Frame, drivers::Refusal, drivers::BridgeRule, drivers::RuleVerdict,
-               safety::Reason, safety::MotorsOff::State, protocol::Machine, console::Action, console::Question,
-               console::Refusal, ElbowSide, validation::Force, validation::TrialKind>;
+               perturbation::MultisinePlan::Axes, perturbation::Stretches::Order, AccelerationSource, AdmittanceOutput,
+               Agreement, ArmPosture::Of, ChartSeries::Drawn, DelayedResponse, Exhibit::Kind, ForceSource,
+               FrequencyResponseMethod, InputHold, InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom,
+               Procedure, Protocol, Provenance, Readers, ReferenceQuantity, RobotMethod, SensorWarningCode,
+               StabilityCondition, StabilityVerdict, Structure, TransferFunctionMethod, Verdict, WarningCode,
+               journal::Ending::How, recording::Format, calibration::SensorFrame, teleop::Architecture, teleop::Form,
+               teleop::SimulatedArm::Kind, control::Phase, device::Motors, device::Wiring::Frame, drivers::Refusal,
+               drivers::BridgeRule, drivers::RuleVerdict, safety::Reason, safety::MotorsOff::State, protocol::Machine,
+               console::Action, console::Question, console::Refusal, ElbowSide, validation::Force,
+               validation::TrialKind>;
 
 std::vector<Table> tables() {
   return tables_of(std::type_identity<Enumerations>());
