@@ -69,7 +69,8 @@ class Recordings(Case):
         names = re.findall(r"(?m)^  (\w+) ", self.fine("simulate", "--list").out)
         for name in ("relaxed_sinusoidal", "relaxed_underdamped", "rigid_underdamped_2N", "rigid_underdamped_8N",
                      "rigid_sinusoidal_6N", "one_axis_random_binary", "rig_table_3_1", "rig_table_5_1",
-                     "rig_springs_table_3_1", "rig_springs_table_5_1", "free_motion", "relaxed_space"):
+                     "rig_springs_table_3_1", "rig_springs_table_5_1", "free_motion", "relaxed_space",
+                     "elbow_healthy", "elbow_spastic", "elbow_perturbed"):
             self.assertIn(name, names)
         shown = self.file("copy.toml", self.fine("simulate", "--show", "free_motion").out)
         self.fine("simulate", shown, "--out", self.folder / "a.mat", "--quiet")
@@ -97,6 +98,26 @@ class Recordings(Case):
             self.assertEqual([len(row) for row in json.loads(metadata[name])], [3, 3, 3])
         self.assertEqual(len(json.loads(metadata["truth_x0"])), 3)
         self.refused(BAD_DATA, "run", "relaxed_space", "--dry-run", says="in space")
+
+    def test_an_elbow_has_emg_and_the_truth_of_its_reflex(self):
+        facts = self.fine("simulate", "elbow_spastic", "--facts").out
+        self.assertRegex(facts, r"peak +70 ° ")
+        self.assertRegex(facts, r"speed +peak 210 °/s ")
+        short = re.sub("repetitions = 5", "repetitions = 1", self.fine("simulate", "--show", "elbow_spastic").out)
+        scenario = self.file("spastic.toml", short)
+        for name in ("spastic.h5", "spastic.mat"):
+            self.fine("simulate", scenario, "--out", self.folder / name, "--quiet")
+        self.fine("simulate", scenario, "--out", self.folder / "spastic.csv", "--quiet", "--blind")
+        lines = (self.folder / "spastic.csv").read_text().splitlines()
+        header = next(line for line in lines if "reaction" in line)
+        for name in ("position", "reference", "emg_biceps", "emg_triceps"):
+            self.assertIn(name, header)
+        metadata = self.fine("info", "--json", self.folder / "spastic.h5").json["metadata"]
+        speeds = json.loads(metadata["truth_stretch_speed_rad_per_s"])
+        thresholds = json.loads(metadata["truth_stretch_threshold_rad"])
+        for v, threshold in zip(speeds, thresholds, strict=True):  # the reflex begins while the speed is constant
+            self.assertAlmostEqual(threshold, float(metadata["truth_biceps_threshold_rad"]) - 0.1 * v, places=6)
+        self.refused(BAD_DATA, "run", "elbow_spastic", "--dry-run", says="one-axis")
 
     def test_facts_of_a_one_axis_machine_are_in_its_units(self):
         facts = self.fine("simulate", self.file("joint.toml", ONE_AXIS), "--facts").out

@@ -42,6 +42,10 @@ Recording recorded(std::string_view name) {
   if (auto* sines = std::get_if<perturbation::MultisinePlan>(&kind)) sines->duration = 12.0;
   if (auto* binary = std::get_if<perturbation::RandomBinaryPlan>(&kind)) binary->duration = 12.0;
   if (auto* ramps = std::get_if<perturbation::RampPlan>(&kind)) ramps->ramps.repetitions = 1;
+  if (auto* stretches = std::get_if<perturbation::StretchPlan>(&kind)) {
+    stretches->stretches.speeds = {1.0, 3.0};
+    stretches->stretches.repetitions = 1;
+  }
   return laboratory::simulate(scenario).value().recording;
 }
 

@@ -40,6 +40,7 @@ constexpr auto kUnits = std::to_array<Named>({
     {"Nms", {}},
     {"V", {}},
     {"mV", {1.0, 1e3}},
+    {"uV", {1.0, 1e6}},
     {"A", {}},
     {"mA", {1.0, 1e3}},
     {"percent", {1.0, 1e2}},

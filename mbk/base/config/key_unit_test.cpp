@@ -16,6 +16,7 @@ TEST(UnitOfKey, ConvertsToSiExactly) {
   EXPECT_EQ(unit_of_key("motor_g").to_si(250.0), 0.25);
   EXPECT_EQ(unit_of_key("overlap_percent").to_si(50.0), 0.5);
   EXPECT_EQ(unit_of_key("cutoff_hz").to_si(50.0), 50.0);
+  EXPECT_EQ(unit_of_key("noise_uV").to_si(5.0), 5e-6);
 }
 
 TEST(UnitOfKey, ReadsQuotientsAndSquares) {

@@ -26,6 +26,7 @@ using perturbation::RandomBinaryPlan;
 using perturbation::ReachPlan;
 using perturbation::RestPlan;
 using perturbation::Space;
+using perturbation::StretchPlan;
 
 /// A unit in which a perturbation may be given, and what it commands.
 struct SizeUnit {
@@ -157,6 +158,23 @@ RampPlan read_ramps(const Section& s, const Size& size) {
   return plan;
 }
 
+StretchPlan read_stretches(const Section& s) {
+  StretchPlan plan;
+  perturbation::Stretches::Options& r = plan.stretches;
+  r.amplitude = s.number("amplitude_deg", r.amplitude);
+  r.speeds = s.numbers("speeds_deg_per_s", r.speeds, above(0));
+  r.repetitions = s.integer("repetitions", r.repetitions, 1, 1000);
+  r.order = s.choice("order", r.order);
+  r.acceleration = s.number("acceleration_deg_per_s2", r.acceleration, above(0));
+  r.hold = s.number("hold_s", r.hold, above(0));
+  r.way_back = s.number("return_s", r.way_back, above(0));
+  r.shortest_pause = s.number("shortest_pause_s", r.shortest_pause, at_least(0));
+  r.longest_pause = s.number("longest_pause_s", r.longest_pause, at_least(0));
+  r.quiet = s.number("quiet_s", r.quiet, at_least(0));
+  plan.tail = s.number("tail_s", plan.tail, at_least(0));
+  return plan;
+}
+
 ReachPlan read_reaches(const Section& s) {
   ReachPlan plan;
   perturbation::ReachSchedule::Options& r = plan.reaches;
@@ -232,12 +250,13 @@ control::Mode read_control(const Section& s) {
 }
 
 Plan read_perturbation(const Section& s, Machine machine) {
-  enum class Kind { none, multisine, pulses, random_binary, ramp_and_hold, servo_displacement };
-  const bool one_axis = machine == Machine::one_axis, space = machine == Machine::space;
-  const std::vector<SizeUnit> of_axis = {kDegrees, kNewtonMetres}, in_space = {kMillimetres},
+  enum class Kind { none, multisine, pulses, random_binary, ramp_and_hold, stretches, servo_displacement };
+  const bool joint = machine == Machine::joint, one_axis = joint || machine == Machine::one_axis;
+  const bool space = machine == Machine::space;
+  const std::vector<SizeUnit> of_joint = {kDegrees}, of_axis = {kDegrees, kNewtonMetres}, in_space = {kMillimetres},
                               at_hand = {kMillimetres, kNewtons}, of_sines = {kDegrees, kMillimetres, kNewtons};
   const auto sizes = [&](const std::vector<SizeUnit>& in_plane) {
-    return one_axis ? of_axis : space ? in_space : in_plane;
+    return joint ? of_joint : one_axis ? of_axis : space ? in_space : in_plane;
   };
   const auto amplitude = [&](const SizeUnit& unit, double fallback) {
     return read_size(s, "amplitude", sizes(at_hand), {unit, fallback});
@@ -249,12 +268,14 @@ Plan read_perturbation(const Section& s, Machine machine) {
                                                      {"pulses", Kind::pulses},
                                                      {"random_binary", Kind::random_binary},
                                                      {"ramp_and_hold", Kind::ramp_and_hold},
+                                                     {"stretches", Kind::stretches},
                                                      {"servo_displacement", Kind::servo_displacement},
                                                      {"none", Kind::none}});
   if (space && kind != Kind::multisine && kind != Kind::pulses) {
     s.reject("kind", "this perturbation is planar", "use multisine or pulses in space");
     return plan;
   }
+  if (joint && kind == Kind::none) s.reject("kind", "the machine has to move the joint", "use stretches, for example");
   switch (kind) {
     case Kind::none:
       plan.kind = RestPlan{s.number("duration_s", RestPlan{}.duration, above(0))};
@@ -284,6 +305,11 @@ Plan read_perturbation(const Section& s, Machine machine) {
       unit = size.unit;
       break;
     }
+    case Kind::stretches:
+      if (!one_axis) s.reject("kind", "stretches move one joint", "use a robot of kind joint or one_axis");
+      plan.kind = read_stretches(s);
+      unit = kDegrees;
+      break;
     case Kind::servo_displacement:
       if (one_axis) s.reject("kind", "reaching needs a plane", "use a planar robot");
       plan.kind = read_reaches(s);

@@ -10,11 +10,11 @@ namespace mbk::protocol {
 /// The sections that scenarios and experiments share. What is wrong in one is an error of its document, with file,
 /// line, key, value and what is allowed.
 
-enum class Machine { planar, one_axis, space };
+enum class Machine { planar, one_axis, space, joint };
 
 [[nodiscard]] constexpr auto word_table(Machine) {
   using enum Machine;
-  return std::to_array<Word<Machine>>({{planar, "planar"}, {one_axis, "one_axis"}, {space, "space"}});
+  return std::to_array<Word<Machine>>({{planar, "planar"}, {one_axis, "one_axis"}, {space, "space"}, {joint, "joint"}});
 }
 
 /// `kind` of [robot]; planar if absent.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "mbk/model/perturbation/largest_value.h"
@@ -106,6 +107,15 @@ Result<Schedule> Schedule::ramps(const RampAndHold::Options& options, double tai
   return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, space, duration));
 }
 
+Result<Schedule> Schedule::stretches(const Stretches::Options& options, double tail, Space space) {
+  auto schedule = Stretches::create(options);
+  if (!schedule) return tl::unexpected(schedule.error());
+  if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is negative", tail));
+  const double duration = schedule->end() + tail;
+  MBK_TRY(check_duration(duration));
+  return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, space, duration));
+}
+
 Result<Schedule> Schedule::reaches(const ReachSchedule::Options& options, double tail) {
   auto schedule = ReachSchedule::create(options);
   if (!schedule) return tl::unexpected(schedule.error());
@@ -129,25 +139,27 @@ int Schedule::axes() const {
 Jet<AxesVector> Schedule::at(double t) const {
   const AxesVector zero = AxesVector::Zero(axes());
   if (t < 0.0) return {zero, zero, zero};
-  return std::visit(Overloaded{[&](const Rest&) -> Jet<AxesVector> {
-                                 return {zero, zero, zero};
-                               },
-                               [&](const Sines& sines) -> Jet<AxesVector> {
-                                 const Jet<double> g = sines.growth.at(t);
-                                 Jet<AxesVector> r{zero, zero, zero};
-                                 for (Eigen::Index i = 0; i < zero.size(); ++i) {
-                                   const Jet<double> s = sines.axes[static_cast<std::size_t>(i)].at(t);
-                                   r.value[i] = g.value * s.value;
-                                   r.first[i] = g.first * s.value + g.value * s.first;
-                                   r.second[i] = g.second * s.value + 2.0 * g.first * s.first + g.value * s.second;
-                                 }
-                                 return r;
-                               },
-                               [&](const PulseSchedule& pulses) { return pulses.at(t); },
-                               [&](const RampAndHold& ramps) { return of_plane(ramps.at(t)); },
-                               [&](const ReachSchedule& reaches) { return of_plane(reaches.at(t)); },
-                               [&](const Binary& binary) { return along(binary.sequence.at(t), binary.direction_B); }},
-                    shape_);
+  return std::visit(
+      Overloaded{[&](const Rest&) -> Jet<AxesVector> {
+                   return {zero, zero, zero};
+                 },
+                 [&](const Sines& sines) -> Jet<AxesVector> {
+                   const Jet<double> g = sines.growth.at(t);
+                   Jet<AxesVector> r{zero, zero, zero};
+                   for (Eigen::Index i = 0; i < zero.size(); ++i) {
+                     const Jet<double> s = sines.axes[static_cast<std::size_t>(i)].at(t);
+                     r.value[i] = g.value * s.value;
+                     r.first[i] = g.first * s.value + g.value * s.first;
+                     r.second[i] = g.second * s.value + 2.0 * g.first * s.first + g.value * s.second;
+                   }
+                   return r;
+                 },
+                 [&](const PulseSchedule& pulses) { return pulses.at(t); },
+                 [&](const RampAndHold& ramps) { return of_plane(ramps.at(t)); },
+                 [&](const Stretches& stretches) { return along(stretches.at(t), Eigen::Vector2d::UnitX()); },
+                 [&](const ReachSchedule& reaches) { return of_plane(reaches.at(t)); },
+                 [&](const Binary& binary) { return along(binary.sequence.at(t), binary.direction_B); }},
+      shape_);
 }
 
 AxesVector Schedule::reference(double t) const {
@@ -167,6 +179,12 @@ std::vector<ScheduleEvent> Schedule::events() const {
       events.push_back({ramp.onset, "onset", ramp.angle});
       events.push_back({ramp.offset, "offset", ramp.angle});
     }
+  } else if (const Stretches* at_speeds = stretches()) {
+    const double angle = at_speeds->options().amplitude > 0.0 ? 0.0 : std::numbers::pi;
+    for (const Stretches::Stretch& stretch : at_speeds->stretches()) {
+      events.push_back({stretch.onset, "onset", angle});
+      events.push_back({stretch.offset, "offset", angle});
+    }
   }
   return events;
 }
@@ -179,6 +197,7 @@ std::pair<Hertz, Hertz> Schedule::band() const {
                         },
                         [&](const PulseSchedule& pulses) { band.second = pulses.bandwidth(); },
                         [&](const RampAndHold& ramps) { band.second = ramps.bandwidth(); },
+                        [&](const Stretches& stretches) { band.second = stretches.bandwidth(); },
                         [&](const ReachSchedule& reaches) { band.second = reaches.bandwidth(); },
                         [&](const Binary& binary) { band.second = binary.sequence.bandwidth(); }},
              shape_);
@@ -214,6 +233,13 @@ std::vector<double> Schedule::breaks() const {
     const RampAndHold::Options& o = ramps->options();
     for (const RampAndHold::Ramp& ramp : ramps->ramps()) {
       for (const double time : {ramp.onset, ramp.onset + o.ramp, ramp.offset, ramp.offset + o.way_back}) {
+        times.push_back(time);
+      }
+    }
+  } else if (const Stretches* at_speeds = stretches()) {
+    for (const Stretches::Stretch& s : at_speeds->stretches()) {
+      for (const double time :
+           {s.onset, s.fast, s.slowing, s.still, s.offset, s.offset + at_speeds->options().way_back}) {
         times.push_back(time);
       }
     }
@@ -330,9 +356,9 @@ Result<void> Schedule::check(const Limits& limits) const {
       return bad_usage(fmt::format("highest frequency {:.4g} Hz of the {} is above the limit {:.4g} Hz",
                                    found.highest_frequency.value, name, limits.bandwidth->value),
                        lines ? "remove the harmonics above it"
-                       : std::holds_alternative<RampAndHold>(shape_) || reaches() != nullptr
-                           ? "make the ramps slower"
-                           : "lower the natural frequency of the filter");
+                       : std::holds_alternative<RampAndHold>(shape_) || reaches() != nullptr ? "make the ramps slower"
+                       : stretches() != nullptr ? "make the stretches slower"
+                                                : "lower the natural frequency of the filter");
     }
   }
   if (limits.reachable && quantity_ == Quantity::position) {

@@ -18,6 +18,7 @@
 #include "mbk/model/perturbation/ramp_and_hold.h"
 #include "mbk/model/perturbation/random_binary.h"
 #include "mbk/model/perturbation/reach_schedule.h"
+#include "mbk/model/perturbation/stretches.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
 
 namespace mbk::perturbation {
@@ -37,7 +38,7 @@ enum class Space { hand, joint };  ///< hand: base frame, Cartesian [m | N]; joi
 /// An event of a schedule.
 struct ScheduleEvent {
   double time = 0.0;   ///< [s] from the start of the schedule
-  std::string name;    ///< "onset" or "offset" of a pulse or ramp
+  std::string name;    ///< "onset" or "offset" of a pulse, ramp or stretch
   double value = 0.0;  ///< its angle from +x [rad]
 };
 
@@ -55,8 +56,8 @@ struct Facts {
   AxesVector axis_rms;                  ///< of each axis [u]
   AxesVector crest_factor;              ///< axis_peak/axis_rms; 0 for an axis at rest
   Hertz lowest_frequency;               ///< sines: lowest line; else 0
-  Hertz highest_frequency;  ///< sines: highest line. Pulses: −3 dB of G, eq. 3.5. Binary: of sinc·G. Ramps: of the
-                            ///< velocity. Rest: 0
+  Hertz highest_frequency;  ///< sines: highest line. Pulses: −3 dB of G, eq. 3.5. Binary: of sinc·G. Ramps, stretches:
+                            ///< of the velocity. Rest: 0
 };
 
 /// Limits of a schedule; empty ones are not checked. u is the unit of its value.
@@ -105,6 +106,13 @@ class Schedule {
   [[nodiscard]] static Result<Schedule> ramps(const RampAndHold::Options& options, double tail,
                                               Space space = Space::hand);
 
+  /// Stretches at constant velocity along the first axis; position.
+  /// @param tail  from the end of the last return to the end [s]
+  /// @fails  as Stretches::create; the tail is below 0 or not finite; the whole is longer than kLongest; more than
+  /// kMaxCycles of the stretches' bandwidth.
+  [[nodiscard]] static Result<Schedule> stretches(const Stretches::Options& options, double tail,
+                                                  Space space = Space::joint);
+
   /// Displacements of a reaching hand relative to its predicted path; position, Space::hand. Its function of time is
   /// the expected course (ReachSchedule): the participant decides when a reach begins.
   /// @param tail  from the end of the last interval to the end [s]
@@ -124,6 +132,9 @@ class Schedule {
   /// The reaches that it displaces; null if it has no reaches.
   [[nodiscard]] const ReachSchedule* reaches() const { return std::get_if<ReachSchedule>(&shape_); }
 
+  /// Its stretches; null if it has none.
+  [[nodiscard]] const Stretches* stretches() const { return std::get_if<Stretches>(&shape_); }
+
   /// r, ṙ, r̈ at t [s]: displacement from home [m or rad] or force [N or N·m]; zero before 0. Does not allocate.
   [[nodiscard]] Jet<AxesVector> at(double t) const;
 
@@ -131,7 +142,7 @@ class Schedule {
   /// each pulse has an onset and an offset; otherwise the signal itself. Does not allocate.
   [[nodiscard]] AxesVector reference(double t) const;
 
-  /// Onset and offset of every pulse or ramp, in time order; otherwise empty.
+  /// Onset and offset of every pulse, ramp or stretch, in time order; otherwise empty.
   [[nodiscard]] std::vector<ScheduleEvent> events() const;
 
   /// Computed on a grid of 64 samples per period of the highest frequency, with refined peaks. Offline: allocates.
@@ -152,7 +163,7 @@ class Schedule {
     RandomBinary sequence;
     Eigen::Vector2d direction_B;
   };
-  using Shape = std::variant<Rest, Sines, PulseSchedule, Binary, RampAndHold, ReachSchedule>;
+  using Shape = std::variant<Rest, Sines, PulseSchedule, Binary, RampAndHold, Stretches, ReachSchedule>;
 
   Schedule(Shape shape, Quantity quantity, Space space, double duration)
       : shape_(std::move(shape)), quantity_(quantity), space_(space), duration_(duration) {}

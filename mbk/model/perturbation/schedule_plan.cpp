@@ -94,6 +94,12 @@ Result<Schedule> schedule_of(const RampPlan& plan, std::uint64_t seed, int /*axe
   return Schedule::ramps(ramps, plan.tail, plan.space);
 }
 
+Result<Schedule> schedule_of(const StretchPlan& plan, std::uint64_t seed, int /*axes*/) {
+  Stretches::Options stretches = plan.stretches;
+  stretches.seed = seed;
+  return Schedule::stretches(stretches, plan.tail, plan.space);
+}
+
 Result<Schedule> schedule_of(const ReachPlan& plan, std::uint64_t seed, int /*axes*/) {
   ReachSchedule::Options reaches = plan.reaches;
   reaches.seed = seed;

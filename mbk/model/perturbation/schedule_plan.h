@@ -12,6 +12,7 @@
 #include "mbk/model/perturbation/random_binary.h"
 #include "mbk/model/perturbation/reach_schedule.h"
 #include "mbk/model/perturbation/schedule.h"
+#include "mbk/model/perturbation/stretches.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
 
 namespace mbk::perturbation {
@@ -81,6 +82,13 @@ struct RampPlan {
   double tail = 1.0;  ///< recorded after the last return [s]
 };
 
+/// Stretches at constant velocity.
+struct StretchPlan {
+  Space space = Space::joint;
+  Stretches::Options stretches;
+  double tail = 1.0;  ///< recorded after the last return [s]
+};
+
 /// Servo displacements of a hand that reaches.
 struct ReachPlan {
   ReachSchedule::Options reaches;
@@ -93,7 +101,8 @@ struct RestPlan {
 };
 
 struct Plan {
-  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan, RampPlan, ReachPlan> kind = MultisinePlan{};
+  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan, RampPlan, StretchPlan, ReachPlan> kind =
+      MultisinePlan{};
   Limits limits;  ///< limits of the schedule
   int axes = 2;   ///< 3: in space; multisines and pulses alone
 };

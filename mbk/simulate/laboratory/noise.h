@@ -62,6 +62,8 @@ enum class NoiseSource : std::uint32_t {
   acceleration = 140,
   motor_current = 150,
   clock = 160,
+  emg = 170,
+  emg_electrodes = 180,
 };
 
 /// @param axis  0 … 9

@@ -107,8 +107,14 @@ std::map<std::string, std::string> metadata(const PrescribedMotionOptions& o) {
           {"truth_x0", as_text(o.limb.x0)}};
 }
 
-std::map<std::string, std::string> metadata(const PrescribedMotionSensors& sensors) {
+std::map<std::string, std::string> metadata(const PrescribedMotionSensors& sensors, bool turns) {
   const auto number = [](double value) { return fmt::format("{:.17g}", value); };
+  if (turns) {
+    return {{"position_quantum_rad", number(sensors.position_quantum)},
+            {"reaction_noise_Nm", number(sensors.force_noise)},
+            {"coloured_noise_Nm", number(sensors.coloured_force_noise)},
+            {"coloured_bandwidth_hz", number(sensors.coloured_force_bandwidth.value)}};
+  }
   return {{"position_quantum_m", number(sensors.position_quantum)},
           {"force_noise_N", number(sensors.force_noise)},
           {"coloured_force_noise_N", number(sensors.coloured_force_noise)},
@@ -194,30 +200,33 @@ Result<Recording> record(const PrescribedMotion& motion, const HandForce& force_
     }
   }
 
-  const auto add = [&](const QuantityChannels& quantity, const Matrix& signals, const auto& sense) {
+  const bool turns = motion.turns();
+  const auto add = [&](const QuantityChannels& quantity, const char* unit, const Matrix& signals, const auto& sense) {
     for (Index i = 0; i < axes; ++i) {
       Vector signal = signals.col(i);
       sense(signal, static_cast<std::uint32_t>(i));
-      recording.channels.push_back(
-          {quantity.name(static_cast<int>(axes), i), quantity.unit, quantity.frame, std::move(signal)});
+      recording.channels.push_back({quantity.name(static_cast<int>(axes), i), turns ? unit : quantity.unit,
+                                    turns ? "joint" : quantity.frame, std::move(signal)});
     }
   };
-  add(kPositionChannels, position, [&](Vector& s, std::uint32_t) {
+  add(kPositionChannels, "rad", position, [&](Vector& s, std::uint32_t) {
     for (double& value : s) value = quantised(value, sensors.position_quantum);
   });
-  add(kForceChannels, force, [&](Vector& s, std::uint32_t axis) {
+  add(kForceChannels, "N.m", force, [&](Vector& s, std::uint32_t axis) {
     WhiteNoise white(sensors.force_noise, Random(seed, kWhiteForce + axis));
     ColouredNoise coloured(sensors.coloured_force_noise, sensors.coloured_force_bandwidth, 1.0 / rate.value,
                            Random(seed, kColouredForce + axis));
     for (double& value : s) value = value + white.next() + coloured.next();
   });
-  add(kReferenceChannels, reference, [](Vector&, std::uint32_t) {});
-  add(kAccelerationChannels, acceleration, [&](Vector& s, std::uint32_t axis) {
-    WhiteNoise white(sensors.acceleration_noise, Random(seed, kAcceleration + axis));
-    for (double& value : s) value += white.next();
-  });
+  add(kReferenceChannels, "rad", reference, [](Vector&, std::uint32_t) {});
+  if (!turns) {
+    add(kAccelerationChannels, "", acceleration, [&](Vector& s, std::uint32_t axis) {
+      WhiteNoise white(sensors.acceleration_noise, Random(seed, kAcceleration + axis));
+      for (double& value : s) value += white.next();
+    });
+  }
   recording.events = motion.events();
-  recording.metadata = metadata(sensors);
+  recording.metadata = metadata(sensors, turns);
   return recording;
 }
 

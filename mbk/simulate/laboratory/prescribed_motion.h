@@ -72,6 +72,8 @@ class PrescribedMotion {
   [[nodiscard]] perturbation::AxesVector reference(double t) const;
 
   [[nodiscard]] Index axes() const { return home_.size(); }
+  /// Whether the positions are angles of a joint.
+  [[nodiscard]] bool turns() const { return schedule_.space() == perturbation::Space::joint; }
   [[nodiscard]] double duration() const { return schedule_.duration(); }  ///< [s]
 
   /// For every pulse an "onset" and an "offset" whose value is the direction's angle from +x [rad].
@@ -88,8 +90,9 @@ using HandForce = std::function<perturbation::AxesVector(const perturbation::Jet
 /// A recording of a prescribed motion and the limb's force, with the sensors' rounding and noise. There is no loop:
 /// nothing that the limb does moves the robot, and neither bias from feedback nor loss of the motion can occur.
 /// Sample i is at (i + 1)/rate. Two axes: hand_x, hand_y, force_x, force_y, reference_x, reference_y, acceleration_x,
-/// acceleration_y; three likewise; one axis: position, reaction, reference, acceleration. Metadata hold the sensors'
-/// options with 17 digits.
+/// acceleration_y; three likewise; one axis: position, reaction, reference, acceleration. A joint that turns, in rad
+/// and N·m, has no accelerometer. Metadata hold the sensors' options with 17 digits.
+/// @param force  called once for each sample, in order
 /// @param seed  of the noise
 /// @fails  usage: rate ≤ 0; a sensor option is negative or not finite. data: a force is not finite, with the time.
 [[nodiscard]] Result<Recording> record(const PrescribedMotion& motion, const HandForce& force,

@@ -14,6 +14,7 @@
 #include "mbk/model/trial/springs.h"
 #include "mbk/simulate/laboratory/prescribed_motion.h"
 #include "mbk/simulate/laboratory/ready_scenarios.h"
+#include "mbk/simulate/laboratory/record_elbow.h"
 #include "mbk/simulate/laboratory/simulated_experiment.h"
 #include "mbk/simulate/participant/arm.h"
 #include "mbk/simulate/participant/compliant_grip.h"
@@ -67,7 +68,7 @@ struct SpaceTrial {
 
 /// All inputs of one simulated recording.
 struct Scenario : protocol::TrialPlan {
-  std::variant<PlanarTrial, OneAxisTrial, SpaceTrial> trial;
+  std::variant<PlanarTrial, OneAxisTrial, SpaceTrial, ElbowTrial> trial;
 };
 
 /// The trials that a scenario file describes, in its order. Every key has its unit; unknown keys are errors. The

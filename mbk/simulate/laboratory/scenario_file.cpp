@@ -425,6 +425,68 @@ SpaceTrial read_space(const Section& root, const Section& robot) {
   return trial;
 }
 
+participant::StretchedMuscle read_muscle(const Section& s) {
+  participant::StretchedMuscle muscle;
+  muscle.largest_torque = s.number("largest_Nm", muscle.largest_torque, above(0));
+  muscle.background = s.number("background_percent", muscle.background, between(0, 100));
+  muscle.threshold = s.optional_number("threshold_deg");
+  muscle.threshold_spread = s.number("threshold_spread_deg", muscle.threshold_spread, at_least(0));
+  muscle.velocity_gain = s.number("velocity_gain_ms", muscle.velocity_gain, at_least(0));
+  muscle.gain = s.number("gain_Nm_per_rad", muscle.gain, at_least(0));
+  muscle.latency = s.number("latency_ms", muscle.latency, at_least(0));
+  if (muscle.gain > 0.0 && !muscle.threshold) {
+    s.reject("gain_Nm_per_rad", "the reflex has no threshold", "add threshold_deg");
+  }
+  for (const Section& one : s.sections("response")) {
+    participant::StretchResponse response;
+    response.latency = one.required_number("latency_ms", at_least(0));
+    response.duration = one.number("duration_ms", response.duration, above(0));
+    response.activation = one.number("activation_percent", response.activation, between(0, 100));
+    response.spread = one.number("spread_percent", response.spread, at_least(0));
+    response.trigger_speed = one.number("trigger_deg_per_s", response.trigger_speed, above(0));
+    muscle.responses.push_back(response);
+  }
+  return muscle;
+}
+
+ElbowTrial read_elbow(const Section& root, const Section& robot) {
+  ElbowTrial trial;
+  trial.home = robot.number("home_deg", trial.home);
+  const Section person = root.section("participant");
+  if (person.required_text("kind") != "elbow") {
+    person.reject("kind", "the machine moves an elbow", "write kind = \"elbow\", or use another robot");
+  }
+  participant::ElbowJoint::Options& elbow = trial.elbow;
+  elbow.inertia = person.number("inertia_kg_m2", elbow.inertia, above(0));
+  elbow.viscosity = person.number("viscosity_Nms_per_rad", elbow.viscosity, at_least(0));
+  elbow.stiffness = person.number("stiffness_Nm_per_rad", elbow.stiffness, at_least(0));
+  elbow.rest = person.number("rest_deg", trial.home);
+  elbow.weight = person.number("weight_Nm", elbow.weight, at_least(0));
+  elbow.horizontal = person.number("horizontal_deg", elbow.horizontal);
+  elbow.electromechanical_delay =
+      person.number("electromechanical_delay_ms", elbow.electromechanical_delay, at_least(0));
+  elbow.activation_time = person.number("activation_time_ms", elbow.activation_time, above(0));
+  elbow.muscles[participant::ElbowJoint::flexor] = read_muscle(person.section("biceps"));
+  elbow.muscles[participant::ElbowJoint::extensor] = read_muscle(person.section("triceps"));
+
+  const Section s = root.section("sensors");
+  PrescribedMotionSensors& sensors = trial.sensors;
+  sensors.position_quantum = s.number("position_resolution_rad", sensors.position_quantum, at_least(0));
+  sensors.force_noise = s.number("reaction_noise_Nm", sensors.force_noise, at_least(0));
+  sensors.coloured_force_noise = s.number("coloured_noise_Nm", sensors.coloured_force_noise, at_least(0));
+  sensors.coloured_force_bandwidth =
+      Hertz(s.number("coloured_bandwidth_hz", sensors.coloured_force_bandwidth.value, above(0)));
+  const Section e = s.section("emg");
+  SurfaceEmgOptions& emg = trial.emg;
+  emg.largest = e.number("largest_uV", emg.largest, at_least(0));
+  emg.noise = e.number("noise_uV", emg.noise, at_least(0));
+  emg.hum = e.number("hum_uV", emg.hum, at_least(0));
+  emg.mains = Hertz(e.number("mains_hz", emg.mains.value, above(0)));
+  emg.lowest = Hertz(e.number("lowest_hz", emg.lowest.value, above(0)));
+  emg.highest = Hertz(e.number("highest_hz", emg.highest.value, above(0)));
+  return trial;
+}
+
 /// The machine's axis is the first one of the schedule: everything goes to and fro along it.
 void along_one_axis(perturbation::Plan& plan) {
   if (auto* binary = std::get_if<perturbation::RandomBinaryPlan>(&plan.kind)) binary->angle = 0.0;
@@ -458,6 +520,10 @@ Scenario read_scenario(const Section& root) {
       break;
     case protocol::Machine::space:
       scenario.trial = read_space(root, robot);
+      break;
+    case protocol::Machine::joint:
+      scenario.trial = read_elbow(root, robot);
+      along_one_axis(scenario.perturbation);
       break;
   }
   return scenario;

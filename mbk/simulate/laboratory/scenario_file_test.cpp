@@ -575,6 +575,61 @@ TEST(ScenarioFile, ReadsRampsAndHolds) {
   EXPECT_EQ(std::get<perturbation::RampPlan>(along.kind).ramps.repetitions, 40);
 }
 
+/// A machine that moves an elbow, with more lines in [participant] or behind it.
+std::string elbow(const std::string& perturbation, const std::string& more = "") {
+  return "[robot]\nkind = \"joint\"\nhome_deg = 80\n[perturbation]\n" + perturbation +
+         "\n[participant]\nkind = \"elbow\"\n" + more;
+}
+
+TEST(ScenarioFile, ReadsAnElbowAndItsStretches) {
+  const auto scenario = read(elbow("kind = \"stretches\"\namplitude_deg = -70\nspeeds_deg_per_s = [10, 90]\n"
+                                   "repetitions = 3\norder = \"listed\"\nacceleration_deg_per_s2 = 1800\n",
+                                   "inertia_kg_m2 = 0.07\nweight_Nm = 2\nhorizontal_deg = 90\n"
+                                   "[participant.triceps]\nthreshold_deg = 45\nvelocity_gain_ms = 80\n"
+                                   "gain_Nm_per_rad = 9\nlatency_ms = 28\nbackground_percent = 2\n"
+                                   "[[participant.triceps.response]]\nlatency_ms = 55\nactivation_percent = 6\n"
+                                   "trigger_deg_per_s = 30\n[sensors.emg]\nlargest_uV = 800\nhum_uV = 5\n"))
+                            .front();
+  const auto& stretches = std::get<perturbation::StretchPlan>(scenario.perturbation.kind).stretches;
+  EXPECT_DOUBLE_EQ(stretches.amplitude, -70.0 * kDegree);
+  ASSERT_EQ(stretches.speeds.size(), 2U);
+  EXPECT_DOUBLE_EQ(stretches.speeds[1], 90.0 * kDegree);
+  EXPECT_EQ(stretches.repetitions, 3);
+  EXPECT_EQ(stretches.order, perturbation::Stretches::Order::listed);
+  EXPECT_DOUBLE_EQ(stretches.acceleration, 1800.0 * kDegree);
+  const auto& trial = std::get<ElbowTrial>(scenario.trial);
+  EXPECT_DOUBLE_EQ(trial.home, 80.0 * kDegree);
+  EXPECT_EQ(trial.elbow.inertia, 0.07);
+  EXPECT_DOUBLE_EQ(trial.elbow.rest, 80.0 * kDegree);  // home
+  EXPECT_EQ(trial.elbow.weight, 2.0);
+  EXPECT_FALSE(trial.elbow.muscles[participant::ElbowJoint::flexor].threshold);
+  const auto& triceps = trial.elbow.muscles[participant::ElbowJoint::extensor];
+  EXPECT_DOUBLE_EQ(triceps.threshold.value(), 45.0 * kDegree);
+  EXPECT_EQ(triceps.velocity_gain, 0.08);
+  EXPECT_EQ(triceps.gain, 9.0);
+  EXPECT_EQ(triceps.latency, 0.028);
+  EXPECT_EQ(triceps.background, 0.02);
+  ASSERT_EQ(triceps.responses.size(), 1U);
+  EXPECT_EQ(triceps.responses[0].latency, 0.055);
+  EXPECT_EQ(triceps.responses[0].activation, 0.06);
+  EXPECT_DOUBLE_EQ(triceps.responses[0].trigger_speed, 30.0 * kDegree);
+  EXPECT_EQ(trial.emg.largest, 800e-6);
+  EXPECT_EQ(trial.emg.hum, 5e-6);
+}
+
+TEST(ScenarioFile, AnElbowIsMovedByAngles) {
+  for (const char* kind : {"kind = \"ramp_and_hold\"\namplitude_deg = 3", "kind = \"multisine\"",
+                           "kind = \"pulses\"\namplitude_deg = 3", "kind = \"random_binary\"\namplitude_deg = 1"}) {
+    const auto plan = read(elbow(kind)).front().perturbation;
+    EXPECT_EQ(perturbation::make_schedule(plan, 1).value().space(), perturbation::Space::joint) << kind;
+  }
+  EXPECT_NE(refusal(elbow("kind = \"multisine\"\npeak_Nm = 1")).find("peak_deg"), std::string::npos);
+  EXPECT_NE(refusal(elbow("kind = \"none\"")).find("kind"), std::string::npos);
+  EXPECT_NE(refusal(with("", "kind = \"position\"", "kind = \"stretches\"")).find("joint"), std::string::npos);
+  EXPECT_NE(refusal(elbow("kind = \"stretches\"", "[participant.biceps]\ngain_Nm_per_rad = 5\n")).find("threshold_deg"),
+            std::string::npos);
+}
+
 TEST(ScenarioFile, MistakesNameFileLineKeyValueAndWhatIsAllowed) {
   const std::pair<std::string, std::vector<std::string>> mistakes[] = {
       {with("peak_degg = 2\n"), {"mine.toml", "line 5", "'peak_degg'", "'peak_deg'"}},

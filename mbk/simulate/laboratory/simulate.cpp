@@ -61,6 +61,13 @@ Result<Performance> run(const SpaceTrial& trial, const Scenario& scenario, const
   return result;
 }
 
+Result<Performance> run(const ElbowTrial& trial, const Scenario& scenario, const SimulateOptions& options,
+                        const perturbation::Schedule& schedule) {
+  auto result = record_elbow(trial, schedule, scenario.seed, scenario.rate);
+  if (result && options.progress) options.progress(1.0);
+  return result;
+}
+
 /// The arm at the handle, if there is one.
 const participant::ArmOptions* arm_of(const Scenario& scenario) {
   const auto* planar = std::get_if<PlanarTrial>(&scenario.trial);

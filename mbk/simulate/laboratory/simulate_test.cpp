@@ -25,6 +25,10 @@ void shorten(Scenario& scenario) {
     pulses->pulses.longest_pause = 2.5;
   }
   if (auto* ramps = std::get_if<perturbation::RampPlan>(&kind)) ramps->ramps.repetitions = 1;
+  if (auto* stretches = std::get_if<perturbation::StretchPlan>(&kind)) {
+    stretches->stretches.speeds = {1.0, 3.0};
+    stretches->stretches.repetitions = 1;
+  }
 }
 
 TEST(Simulate, RunsEveryReadyScenario) {
