@@ -59,6 +59,12 @@ enum class SessionFacet {
   confounded,  ///< each rater has sessions of their own: what sessions differ by is part of what raters do
 };
 
+[[nodiscard]] constexpr auto word_table(SessionFacet) {
+  using enum SessionFacet;
+  return std::to_array<Word<SessionFacet>>(
+      {{separate, "separate"}, {too_few, "too few people with two sessions"}, {confounded, "confounded with raters"}});
+}
+
 /// Restricted maximum likelihood of y = μ + the sum of independent normal effects, one for each level of each term.
 struct RaterModel {
   Support support = Support::enough;  ///< if not, the rest is empty but for the counts
