@@ -144,6 +144,108 @@ class StatisticsOfAStudy(command.Case):
         self.assertRegex(self.do("measure", "--quiet", "--cutoff", "8.5").out, r"\b12\b")
 
 
+class RatersOfAStudy(command.Case):
+    """Six people, each measured once by two raters in one session."""
+    study = None
+
+    def setUp(self):
+        super().setUp()
+        if StatisticsOfAStudy.study is None:
+            StatisticsOfAStudy.study = made_study(command.folder_of_logs())
+        if RatersOfAStudy.study is not None:
+            return
+        study = command.folder_of_logs() / "rated"
+        assert run("study", "init", study).code == FINE
+        for person in range(1, PEOPLE + 1):
+            for session, rater in ((1, "A"), (2, "b")):
+                assert run("study", "add", command.folder_of_logs() / f"{person}_{session}.h5", "--participant", person,
+                           "--condition", "relaxed", "--rater", rater, "--study", study).code == FINE
+        assert run("study", "measure", "--quiet", "--study", study).code == FINE
+        RatersOfAStudy.study = study
+
+    def do(self, name, *arguments, code=FINE, **options):
+        return self.mbk("study", name, *arguments, "--study", self.study, code=code, **options)
+
+    def test_are_listed_shown_and_exported(self):
+        recordings = self.do("list", "--json").json["recordings"]
+        self.assertEqual([(one["rater"], one["session"], one["trial"]) for one in recordings],
+                         [("A", 1, 1), ("B", 1, 1)] * PEOPLE)
+        self.assertIn("rater", self.do("list").out.splitlines()[3])
+        self.assertIn("rater B", self.do("show", 2).out)
+        rows = list(csv.DictReader(io.StringIO(self.do("export").out)))
+        self.assertEqual({row["rater"] for row in rows}, {"A", "B"})
+        self.assertEqual(self.do("check", "--quick", "--json").json["problems"], [])
+
+    def test_go_to_bids_and_back(self):
+        self.do("export", "--bids", self.folder / "bids")
+        names = [file.name for file in (self.folder / "bids").rglob("*_motion.tsv")]
+        self.assertEqual(len(names), 2 * PEOPLE)
+        self.assertTrue(all("_acq-rater" in name for name in names), names)
+        again = self.folder / "again"
+        self.mbk("study", "init", again)
+        self.mbk("study", "import", self.folder / "bids", "--quiet", "--study", again)
+        facts = [(one["participant"], one["rater"], one["condition"])
+                 for one in self.mbk("study", "list", "--json", "--study", again).json["recordings"]]
+        self.assertEqual(sorted(facts), [(p, r, "relaxed") for p in range(1, PEOPLE + 1) for r in "AB"])
+
+    def test_names_are_refused_and_not_repeated(self):
+        file = command.folder_of_logs() / "1_1.h5"
+        for name in ("Jane", "JD", "A B", ""):
+            ran = self.do("add", file, "--participant", 1, "--rater", name, code=WRONG_USAGE)
+            self.assertNotIn("Jane", ran.err)
+        sheet = self.folder / "sheet.csv"
+        sheet.write_text(f"file,participant,rater\n{file},1,Jane\n", encoding="utf-8")
+        self.assertNotIn("Jane", self.do("import", "--sheet", sheet, code=BAD_DATA).err)
+        other = self.do("add", file, "--participant", 1, "--condition", "relaxed", "--rater", "C", code=BAD_DATA)
+        self.assertIn("rater A", other.err)
+
+    def test_are_taken_from_file_names(self):
+        study = self.folder / "named"
+        self.mbk("study", "init", study)
+        shutil.copy(command.folder_of_logs() / "1_1.h5", self.folder / "p1_r02.h5")
+        self.mbk("study", "import", self.folder / "p1_r02.h5", "--pattern", "p{participant}_{rater}.h5", "--study", study)
+        self.assertEqual(self.mbk("study", "list", "--json", "--study", study).json["recordings"][0]["rater"], "R2")
+
+    def test_have_the_coefficients_of_their_two_way_table(self):
+        summary = self.do("summary", "--outcome", "K_xx", "--raters", 3, "--json").json
+        raters = summary["reliability"][0]["raters"]
+        self.assertEqual((raters["support"], raters["participants"], raters["raters"], raters["results"]),
+                         ("enough", PEOPLE, 2, 2 * PEOPLE))
+        self.assertEqual(raters["variances"][-1]["pooled"], ["participant×rater"])
+        self.assertEqual([one["raters"] for one in raters["of_numbers"]], [1, 2, 3])
+        scores = {}
+        for row in csv.DictReader(io.StringIO(self.do("export").out)):
+            if row["outcome"] == "K_xx" and row["state"] == "usable":
+                scores.setdefault(row["participant"], {})[row["rater"]] = float(row["value"])
+        differences = [one["A"] - one["B"] for one in scores.values()]
+        residual = statistics.variance(differences) / 2
+        bias = max(0.0, (statistics.fmean(differences) ** 2 - statistics.variance(differences) / PEOPLE) / 2)
+        people = statistics.variance([(one["A"] + one["B"]) / 2 for one in scores.values()]) - residual / 2
+        variances = {one["term"]: one["value"] for one in raters["variances"]}
+        if bias > 0 and people > 0:  # the analysis of variance; otherwise the likelihood is largest at a bound
+            self.assertAlmostEqual(variances["participant"] / people, 1, places=4)
+            self.assertAlmostEqual(variances["residual"] / residual, 1, places=4)
+        one = raters["of_numbers"][0]
+        total = sum(variances.values())
+        self.assertAlmostEqual(one["absolute"], variances["participant"] / total, places=9)
+        self.assertAlmostEqual(one["absolute_error"]["sem"], (total - variances["participant"]) ** 0.5, places=9)
+        self.assertTrue(0 <= one["absolute95"][0] <= one["absolute"] <= one["absolute95"][1] <= 1)
+
+    def test_are_in_text_and_table_and_nowhere_without_them(self):
+        for options in ((), ("--outcome", "K_xx", "--raters", "2", "--trials", "2")):
+            text = self.do("summary", *options).out
+            self.assertIn("Φ", text)
+            self.assertLessEqual(max(map(len, text.splitlines())), 80)
+        self.assertIn("more trials", text)
+        self.assertIn(",phi,", self.do("summary", "--format", "csv").out.splitlines()[0])
+        self.do("summary", "--raters", 2, code=WRONG_USAGE)  # of which outcome?
+        study = ("--study", StatisticsOfAStudy.study)
+        self.mbk("study", "summary", "--outcome", "K_xx", "--raters", 2, *study, code=WRONG_USAGE)
+        for words in (("summary",), ("summary", "--json"), ("summary", "--format", "csv"), ("list",), ("list", "--json"),
+                      ("export",)):
+            self.assertNotIn("rater", self.mbk("study", *words, *study).out, words)
+
+
 class APlan(command.Case):
     def test_of_stated_variances_is_what_simulated_studies_show(self):
         plan = self.mbk("study", "plan", "--sd-people", "60", "--sd-sessions", "15", "--sd-trials", "25",

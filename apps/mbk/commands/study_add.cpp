@@ -23,6 +23,7 @@ struct AddArguments {
   StudyArguments study;
   std::vector<std::filesystem::path> files;
   KnownFacts facts;
+  std::string rater;  ///< as typed
   std::string pattern;
   std::optional<std::filesystem::path> sheet;
   bool strip = false, quiet = false;
@@ -30,8 +31,9 @@ struct AddArguments {
 
 std::string added_line(const AddedRecording& added) {
   const store::StoredRecording& r = added.recording;
-  return fmt::format("recording {}: participant {}, session {}, {}trial {}, {:.1f} s{}{}\n", r.number, r.participant,
-                     r.session, r.condition.empty() ? "" : r.condition + ", ", r.trial, r.duration_s,
+  return fmt::format("recording {}: participant {}, session {}, {}{}trial {}, {:.1f} s{}{}\n", r.number, r.participant,
+                     r.session, r.condition.empty() ? "" : r.condition + ", ",
+                     r.rater.empty() ? "" : "rater " + r.rater + ", ", r.trial, r.duration_s,
                      added.there_before ? " (already stored)" : "",
                      r.excluded_why ? ", excluded: " + *r.excluded_why : "");
 }
@@ -65,13 +67,20 @@ int add_all(const AddArguments& arguments, const std::vector<store::SheetRow>& r
   return code;
 }
 
+/// The options' facts, with the rater as a code.
+KnownFacts typed_facts(const AddArguments& arguments) {
+  KnownFacts facts = arguments.facts;
+  if (!arguments.rater.empty()) facts.rater = store::rater_code(arguments.rater);
+  return facts;
+}
+
 int run_add(const AddArguments& arguments) {
   if (arguments.facts.trial && arguments.files.size() > 1) {
     return report_error({ErrorKind::usage, "--trial numbers one file, but several are named",
                          "omit --trial; trials are numbered automatically", ""});
   }
   std::vector<store::SheetRow> rows;
-  for (const std::filesystem::path& file : arguments.files) rows.push_back({file, arguments.facts});
+  for (const std::filesystem::path& file : arguments.files) rows.push_back({file, typed_facts(arguments)});
   return add_all(arguments, rows);
 }
 
@@ -100,11 +109,18 @@ int run_import(const AddArguments& arguments) {
     for (const Error& error : import->failed) code = std::max(code, report_error(error));
     rows = std::move(import->rows);
   }
-  for (store::SheetRow& row : rows) row.facts = row.facts.or_else(arguments.facts);
+  for (store::SheetRow& row : rows) row.facts = row.facts.or_else(typed_facts(arguments));
   return std::max(code, add_all(arguments, rows));
 }
 
-void add_fact_options(Command command, KnownFacts& facts) {
+OptionCheck rater_code() {
+  return {[](const std::string& given) -> std::string {
+    return store::rater_code(given) ? "" : fmt::format("not a code: {}", store::kRaterAdvice);
+  }};
+}
+
+void add_fact_options(Command command, AddArguments& arguments) {
+  KnownFacts& facts = arguments.facts;
   constexpr long kLargest = 999999999;
   command.add_option("--session", facts.session, "number of the participant's session (default: as recorded, or 1)")
       .type_name("N")
@@ -115,6 +131,11 @@ void add_fact_options(Command command, KnownFacts& facts) {
           "instruction to the participant, such as relaxed (default: as recorded, or none); not a person's name")
       .type_name("WORD")
       .check(not_empty());
+  command
+      .add_option("--rater", arguments.rater,
+                  "who measured: a number or a code such as A or R2, never a name (default: as recorded, or none)")
+      .type_name("CODE")
+      .check(rater_code());
 }
 
 void add_common_options(Command command, AddArguments& arguments) {
@@ -135,6 +156,7 @@ Action add_study_add(Command group) {
       "  mbk study add p07_relaxed.h5 --participant 7 --session 2 --condition relaxed\n"
       "  mbk study add trial_*.mat --participant 7\n"
       "      numbers the trials within participant, session and condition\n"
+      "  mbk study add p07_a.h5 --participant 7 --rater A\n"
       "  mbk study add p07.h5\n"
       "      a recording of 'mbk run' contains participant and condition\n\n"
       "A file is copied into the folder of the study; only the extension of its name (.h5) is kept. A\n"
@@ -145,7 +167,7 @@ Action add_study_add(Command group) {
   command.add_option("--participant", arguments->facts.participant, "number of the participant, never a name")
       .type_name("N")
       .check(whole_number(1, kLargest));
-  add_fact_options(command, arguments->facts);
+  add_fact_options(command, *arguments);
   command.add_option("--trial", arguments->facts.trial, "number of the trial within participant, session and condition")
       .type_name("N")
       .check(whole_number(1, kLargest));
@@ -162,9 +184,10 @@ Action add_study_import(Command group) {
       "  mbk study import recordings/*.h5\n"
       "      recordings of 'mbk run', whose metadata contain participant and condition\n"
       "  mbk study import data/*.mat --pattern 'p{participant}_s{session}_{condition}_*.mat'\n"
-      "      {participant}, {session}, {trial}: digits; {condition}: letters, digits and -; * anything\n"
+      "      {participant}, {session}, {trial}: digits; {condition}: letters, digits and -; {rater}: a code;\n"
+      "      * anything\n"
       "  mbk study import --sheet trials.csv\n"
-      "      columns file, participant and optionally session, condition, trial\n"
+      "      columns file, participant and optionally session, condition, trial, rater\n"
       "  mbk study import data_set\n"
       "      a BIDS data set (Motion): sub-07_ses-2_task-relaxed_run-1 is participant 7, session 2, condition\n"
       "      relaxed, trial 1\n\n"
@@ -178,7 +201,7 @@ Action add_study_import(Command group) {
       .type_name("SHEET.csv")
       .check(not_empty())
       .excludes(pattern);
-  add_fact_options(command, arguments->facts);
+  add_fact_options(command, *arguments);
   add_common_options(command, *arguments);
   return [arguments] { return run_import(*arguments); };
 }

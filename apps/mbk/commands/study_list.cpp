@@ -64,14 +64,17 @@ std::string list_text(const StudyList& list) {
   if (list.recordings.empty()) return text + "  add recordings with 'mbk study add' or 'mbk study import'\n";
   std::size_t width = 9;
   for (const ListedRecording& one : list.recordings) width = std::max(width, one.recording.condition.size());
-  text += fmt::format("\n{:>9}  {:>11}  {:>7}  {:<{}}  {:>5}  {:>6}  state\n", "recording", "participant", "session",
-                      "condition", width, "trial", "s");
+  const bool raters = list.has_raters();
+  const auto rater = [&](const std::string& code) { return raters ? fmt::format("{:>5}  ", code) : std::string(); };
+  text += fmt::format("\n{:>9}  {:>11}  {:>7}  {:<{}}  {}{:>5}  {:>6}  state\n", "recording", "participant", "session",
+                      "condition", width, rater("rater"), "trial", "s");
   for (const ListedRecording& one : list.recordings) {
     const store::StoredRecording& r = one.recording;
     std::string state(word_of(one.state));
     std::ranges::replace(state, '-', ' ');
-    text += fmt::format("{:>9}  {:>11}  {:>7}  {:<{}}  {:>5}  {:>6.1f}  {}{}\n", r.number, r.participant, r.session,
-                        r.condition, width, r.trial, r.duration_s, state, one.reason.empty() ? "" : ": " + one.reason);
+    text += fmt::format("{:>9}  {:>11}  {:>7}  {:<{}}  {}{:>5}  {:>6.1f}  {}{}\n", r.number, r.participant, r.session,
+                        r.condition, width, rater(r.rater), r.trial, r.duration_s, state,
+                        one.reason.empty() ? "" : ": " + one.reason);
   }
   return text;
 }
@@ -83,8 +86,9 @@ std::string outcome_line(const store::Outcome& one) {
 
 std::string show_text(const store::ShownRecording& shown) {
   const store::StoredRecording& r = shown.recording;
-  std::string text = fmt::format("recording {}: participant {}, session {}, {}trial {}\n", r.number, r.participant,
-                                 r.session, r.condition.empty() ? "" : r.condition + ", ", r.trial);
+  std::string text = fmt::format("recording {}: participant {}, session {}, {}{}trial {}\n", r.number, r.participant,
+                                 r.session, r.condition.empty() ? "" : r.condition + ", ",
+                                 r.rater.empty() ? "" : "rater " + r.rater + ", ", r.trial);
   text += fmt::format("  sha256   {}\n", r.sha256);
   if (r.origin_sha256 != r.sha256) text += fmt::format("  made of  {}\n", r.origin_sha256);
   if (r.part > 0) text += fmt::format("  part     {} of its file\n", r.part);
@@ -255,7 +259,8 @@ Action add_study_export(Command group) {
       "      the table of 'mbk study summary --format latex'\n"
       "  mbk study export --bids data_set\n"
       "      the recordings as a BIDS data set (Motion), without excluded ones; condition is the task, trial the "
-      "run\n\n"
+      "run,\n"
+      "      rater the acquisition (acq-raterA)\n\n"
       "The export also contains unusable results and excluded recordings, with their state: select state\n"
       "== 'usable'.");
   add_study_option(command, arguments->study);

@@ -34,6 +34,8 @@ struct SummaryArguments : AnalysisArguments {
   ComparingArguments comparing;
   std::optional<int> draws;
   std::uint64_t seed = 1;
+  std::optional<int> raters;
+  int sessions = 1, trials = 1;
   EngineArguments engine;
 };
 
@@ -188,6 +190,7 @@ int run_summary(const SummaryArguments& arguments) {
   auto options = statistics_options(arguments.comparing);
   if (!options) return report_error(options.error());
   options->outcomes = arguments.outcomes;
+  if (arguments.raters) options->averaged = {*arguments.raters, arguments.sessions, arguments.trials};
   std::optional<store::Store> study;
   const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
@@ -236,6 +239,8 @@ Action add_study_summary(Command group) {
       "      bootstrap intervals, which assume no distribution, from 2000 resamples of the people\n"
       "  mbk study summary --bootstrap 100000 --engine slurm\n"
       "      on the cluster; the intervals are identical\n"
+      "  mbk study summary --outcome K_xx --raters 3 --trials 2\n"
+      "      of the means of one, two and three raters with two trials each, if recordings name raters\n"
       "  mbk study summary --json --out summary.json\n"
       "  mbk study summary --outcome K_xx K_yy --out table_1.tex\n"
       "      a table for a paper: n, mean ± SD, ICC(A,1), SEM, MDC; or --format latex, csv, markdown\n\n"
@@ -243,8 +248,26 @@ Action add_study_summary(Command group) {
       "is reported.");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
-  command.add_option("--outcome", arguments->outcomes, "report only these outcomes, with all statistics (default: all)")
-      .type_name("NAME");
+  const Option outcome = command
+                             .add_option("--outcome", arguments->outcomes,
+                                         "report only these outcomes, with all statistics (default: all)")
+                             .type_name("NAME");
+  const Option raters =
+      command
+          .add_option("--raters", arguments->raters,
+                      "if the study has several raters: reliability, SEM and MDC of the mean of 1 to N raters")
+          .type_name("N")
+          .check(whole_number(1, 100))
+          .needs(outcome);
+  command.add_option("--sessions", arguments->sessions, "number of sessions averaged with --raters (default: 1)")
+      .type_name("N")
+      .check(whole_number(1, 100))
+      .needs(raters);
+  command
+      .add_option("--trials", arguments->trials, "number of trials by each rater, averaged with --raters (default: 1)")
+      .type_name("N")
+      .check(whole_number(1, 1000))
+      .needs(raters);
   add_comparing_options(command, arguments->comparing);
   const Option bootstrap =
       command

@@ -17,6 +17,7 @@ enum class Support {
   too_few_sessions,  ///< of one session or trial nothing repeats
   too_few_trials,    ///< too few sessions with two trials or more: sessions and trials are not identifiable
   no_variation,      ///< all values are alike, or all that could be compared
+  too_few_raters,    ///< fewer than kMinPeople people were measured by two raters
 };
 
 [[nodiscard]] constexpr auto word_table(Support) {
@@ -25,7 +26,8 @@ enum class Support {
                                        {too_few_people, "too few people"},
                                        {too_few_sessions, "too few sessions"},
                                        {too_few_trials, "too few trials"},
-                                       {no_variation, "no variation"}});
+                                       {no_variation, "no variation"},
+                                       {too_few_raters, "too few raters"}});
 }
 
 /// What lies beyond either end of a 95 % interval.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,6 +60,12 @@ struct Cell {
 [[nodiscard]] std::string heavy_tails_in(const OutcomeRows& rows, const Repeated& sessions);
 
 [[nodiscard]] OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named);
+
+/// Of the results that name a rater; nothing where none does.   @param notes  what must be known beside it is added
+[[nodiscard]] std::optional<RaterReliability> rater_reliability(const store::OutcomeColumns& columns,
+                                                                const OutcomeRows& rows,
+                                                                const std::optional<reliability::Averaged>& averaged,
+                                                                std::vector<std::string>& notes);
 
 [[nodiscard]] std::vector<MatrixSpread> matrix_spreads(const store::OutcomeColumns& columns);
 

@@ -83,6 +83,9 @@ void note_duplicates(const store::OutcomeColumns& columns, std::vector<std::stri
 
 Result<StudyStatistics> study_statistics(const store::OutcomeColumns& columns, const StatisticsOptions& options) {
   const auto chosen = MBK_TRY(chosen_columns(columns, options.outcomes));
+  if (options.averaged && columns.raters.empty()) {
+    return bad_usage("no usable result names a rater", "omit --raters, or add recordings with --rater");
+  }
   StudyStatistics statistics;
   note_duplicates(columns, statistics.notes);
   const int outcomes = static_cast<int>(chosen.size());
@@ -95,7 +98,10 @@ Result<StudyStatistics> study_statistics(const store::OutcomeColumns& columns, c
     named.condition = columns.conditions[static_cast<std::size_t>(condition)];
     named.outcome = column.name;
     named.unit = column.unit;
-    reliability[static_cast<std::size_t>(k)] = reliability_of(rows_of(columns, column, condition), std::move(named));
+    const OutcomeRows rows = rows_of(columns, column, condition);
+    OutcomeReliability& one = reliability[static_cast<std::size_t>(k)];
+    one = reliability_of(rows, std::move(named));
+    one.raters = rater_reliability(columns, rows, options.averaged, one.notes);
     return {};
   }));
   std::erase_if(reliability, [](const OutcomeReliability& one) { return one.results == 0; });

@@ -13,6 +13,7 @@
 #include "mbk/base/core/words.h"
 #include "mbk/study/reliability/bland_altman.h"
 #include "mbk/study/reliability/comparison.h"
+#include "mbk/study/reliability/generalizability.h"
 #include "mbk/study/reliability/mixed_model.h"
 #include "mbk/study/reliability/retest.h"
 #include "mbk/study/store/store_values.h"
@@ -51,8 +52,9 @@ struct StatisticsOptions {
   std::vector<std::string> outcomes;  ///< their names; empty: all
   std::optional<Comparing> comparing;
   std::vector<PeopleGroup> groups;
-  unsigned threads = 0;    ///< 0: as many as there are cores; the numbers are the same for any
-  std::uint64_t seed = 1;  ///< of drawn permutations
+  std::optional<reliability::Averaged> averaged;  ///< of raters: also means of 1 … so many raters
+  unsigned threads = 0;                           ///< 0: as many as there are cores; the numbers are the same for any
+  std::uint64_t seed = 1;                         ///< of drawn permutations
 };
 
 /// The same people several times: one value of each person in each repetition.
@@ -119,6 +121,14 @@ struct MixedReliability {
   int typical_trials = 1;                                ///< in a session, the median
 };
 
+/// Variances of raters beside those of people, sessions and trials, from every result that names a rater.
+struct RaterReliability {
+  int without_rater = 0;  ///< results that name none and are left out
+  reliability::RaterModel model;
+  /// Of one trial by one rater in one session, of as many as are typical of the study, and of those asked for.
+  std::vector<reliability::Generalizability> of_numbers;
+};
+
 /// One outcome under one condition.
 struct OutcomeReliability {
   std::string condition, outcome, unit;
@@ -132,6 +142,7 @@ struct OutcomeReliability {
   std::int64_t session = 0;                 ///< the one that `within_session` is of; 0: none
   Repeated within_session;                  ///< of single trials, in their order
   MixedReliability mixed_model;
+  std::optional<RaterReliability> raters;         ///< absent where no result names a rater
   std::optional<ReliabilityBootstrap> bootstrap;  ///< of `between_sessions`, where it was asked for
   std::vector<ReliabilityWarning> warnings;
   std::vector<std::string> notes;  ///< what must be known beside the numbers; sentences

@@ -56,6 +56,40 @@ void describe(Fields<Permutation>& fields) {
   fields.add("arrangements", &Permutation::arrangements);
 }
 
+void describe(Fields<FacetVariance>& fields) {
+  fields.type("StudyRaterVariance");
+  fields.add("term", &FacetVariance::term);
+  fields.add("value", &FacetVariance::value, "[unit²]; never below 0");
+  fields.add("standard_error", &FacetVariance::standard_error, "from the expected information");
+  fields.add("pooled", &FacetVariance::pooled, "variances that the design cannot separate from it");
+}
+
+void describe(Fields<AveragedError>& fields) {
+  fields.type("StudyRaterError");
+  fields.add("sem", &AveragedError::sem, "[unit]; null: unknown");
+  fields.add("sem95", &AveragedError::sem95, "Satterthwaite, allowing for heavy tails");
+  fields.add("mdc95", &AveragedError::mdc95, "1.96 √2 SEM");
+  fields.add("mdc95_interval", &AveragedError::mdc95_interval);
+}
+
+void describe(Fields<Generalizability>& fields) {
+  using From = const Generalizability&;
+  fields.type("StudyGeneralizability", "Of the mean of so many raters, sessions and trials.");
+  fields.add("support", &Generalizability::support, kSupport);
+  fields.add(
+      "raters", [](From one) { return one.averaged.raters; }, "averaged");
+  fields.add("sessions", [](From one) { return one.averaged.sessions; });
+  fields.add(
+      "trials", [](From one) { return one.averaged.trials; }, "by each rater in each session");
+  fields.add("relative", &Generalizability::relative, "generalizability coefficient G: by the same raters");
+  fields.add("relative95", &Generalizability::relative95);
+  fields.add("absolute", &Generalizability::absolute, "dependability coefficient Φ: by any raters");
+  fields.add("absolute95", &Generalizability::absolute95);
+  fields.add("relative_error", &Generalizability::relative_error);
+  fields.add("absolute_error", &Generalizability::absolute_error);
+  fields.add("same_raters", &Generalizability::same_raters, "between two sessions measured by the same raters");
+}
+
 }  // namespace mbk::reliability
 
 namespace mbk::store {
@@ -161,6 +195,24 @@ void describe(Fields<MixedReliability>& fields) {
              "for one trial, and for the mean of the median number of trials per session");
 }
 
+void describe(Fields<RaterReliability>& fields) {
+  using reliability::RaterModel;
+  fields.type("StudyRaters", "People × raters × sessions × trials, by restricted maximum likelihood.");
+  fields.add("support", through(&RaterReliability::model, &RaterModel::support), kSupport);
+  fields.add("participants", through(&RaterReliability::model, &RaterModel::participants));
+  fields.add("repeated_participants", through(&RaterReliability::model, &RaterModel::repeated_participants),
+             "measured by two raters or more");
+  fields.add("raters", through(&RaterReliability::model, &RaterModel::raters));
+  fields.add("sessions", through(&RaterReliability::model, &RaterModel::sessions));
+  fields.add("results", through(&RaterReliability::model, &RaterModel::rows));
+  fields.add("without_rater", &RaterReliability::without_rater, "results that name no rater, left out");
+  fields.add("session_facet", through(&RaterReliability::model, &RaterModel::session_facet),
+             "whether sessions have variances of their own");
+  fields.add("variances", through(&RaterReliability::model, &RaterModel::variances));
+  fields.add("of_numbers", &RaterReliability::of_numbers,
+             "for one rater, session and trial; for the typical numbers of the study; for those of --raters");
+}
+
 void describe(Fields<BootstrapInterval>& fields) {
   fields.type("StudyBootstrap", "A number with its bootstrap over people.");
   fields.add("value", &BootstrapInterval::value);
@@ -194,6 +246,7 @@ void describe(Fields<OutcomeReliability>& fields) {
       "session of within_session");
   fields.add("within_session", [](From one) { return WithinSession{one.within_session}; });
   fields.add("mixed_model", &OutcomeReliability::mixed_model);
+  fields.add("raters", &OutcomeReliability::raters, "if results name raters");
   fields.add("bootstrap", &OutcomeReliability::bootstrap, "of the reliability between sessions, with --bootstrap");
   fields.add("warnings", &OutcomeReliability::warnings,
              "codes of reasons not to take the numbers at face value; each has a sentence in notes");

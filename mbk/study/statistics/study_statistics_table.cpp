@@ -229,6 +229,15 @@ std::string all_digits(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
+/// Of one trial by one rater in one session; empty where there are no raters, or too few.
+std::string rater_fields(const OutcomeReliability* found) {
+  if (found == nullptr || !found->raters || found->raters->of_numbers.empty()) return ",,,,,,";
+  const reliability::Generalizability& one = found->raters->of_numbers.front();
+  return fmt::format(",{},{},{},{},{},{}", found->raters->model.raters, all_digits(one.absolute),
+                     all_digits(one.absolute95.first), all_digits(one.absolute95.second),
+                     all_digits(one.absolute_error.sem), all_digits(one.absolute_error.mdc95));
+}
+
 }  // namespace summary_table
 
 std::string summary_latex(const store::StudyList& list, const std::vector<store::OutcomeSummary>& outcomes,
@@ -246,7 +255,10 @@ std::string summary_csv(const store::StudyList& list, const std::vector<store::O
   using namespace summary_table;
   std::string text =
       "condition,outcome,unit,participants,trials,excluded,mean,sd,icc_form,icc,icc_low95,icc_high95,icc_participants,"
-      "icc_sessions,sem,mdc95,notes\n";
+      "icc_sessions,sem,mdc95,notes";
+  const bool raters =
+      std::ranges::any_of(statistics.reliability, [](const auto& one) { return one.raters.has_value(); });
+  text += raters ? ",raters,phi,phi_low95,phi_high95,sem_rater,mdc95_rater\n" : "\n";
   for (const OutcomeSummary& one : outcomes) {
     text += fmt::format("{},{},{},{},{},{},{},{}", csv_field(one.condition), one.outcome, csv_field(one.unit),
                         one.participants, one.results, excluded(list, one), all_digits(one.mean),
@@ -261,7 +273,9 @@ std::string summary_csv(const store::StudyList& list, const std::vector<store::O
       text += ",,,,,,,,";
     }
     const OutcomeReliability* const found = found_reliability(statistics, one);
-    text += "," + (found == nullptr ? "" : csv_field(fmt::format("{}", fmt::join(found->notes, "; ")))) + "\n";
+    text += "," + (found == nullptr ? "" : csv_field(fmt::format("{}", fmt::join(found->notes, "; "))));
+    if (raters) text += rater_fields(found);
+    text += "\n";
   }
   return text;
 }

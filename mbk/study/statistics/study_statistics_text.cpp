@@ -1,6 +1,7 @@
 #include "mbk/study/statistics/study_statistics_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/counted.h"
 #include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
 #include "mbk/study/statistics/outcome_rows.h"
@@ -67,6 +69,9 @@ std::string why_not(Support support, int people, std::string_view whom = "people
       return fmt::format("too few {} ({}; at least {} needed)", whom, people, reliability::kMinPeople);
     case Support::too_few_sessions:
       return "nobody was measured in two sessions";
+    case Support::too_few_raters:
+      return fmt::format("too few people measured by two raters ({}; at least {} needed)", people,
+                         reliability::kMinPeople);
     case Support::too_few_trials:
       return "too few sessions have two trials";
     case Support::no_variation:
@@ -218,6 +223,84 @@ std::string model_details(const MixedReliability& model) {
   return text;
 }
 
+/// "participant×rater 1.2 (8 %)", with what is pooled into it.
+std::string rater_variance(const reliability::FacetVariance& one, double total) {
+  std::string text(word_of(one.term));
+  for (const reliability::FacetTerm term : one.pooled) text += fmt::format(" with {}", word_of(term));
+  return text + fmt::format(" {} ({:.0f} %)", digits(std::sqrt(one.value)), 100.0 * one.value / total);
+}
+
+std::string error_text(const char* name, const reliability::AveragedError& error) {
+  return fmt::format("SEM {} {} ({}), MDC {} ({})", name, digits(error.sem), range(error.sem95), digits(error.mdc95),
+                     range(error.mdc95_interval));
+}
+
+std::string rater_details(const RaterReliability& raters) {
+  const reliability::RaterModel& model = raters.model;
+  if (model.support != Support::enough) {
+    const bool few_raters = model.support == Support::too_few_raters;
+    return item("  raters: ",
+                why_not(model.support, few_raters ? model.repeated_participants : model.participants, "people"));
+  }
+  std::string text =
+      item("  raters (REML): ", fmt::format("{} results of {} people by {} raters in {} sessions", model.rows,
+                                            model.participants, model.raters, model.sessions));
+  double total = 0.0;
+  for (const auto& one : model.variances) total += one.value;
+  std::vector<std::string> variances;
+  for (const auto& one : model.variances) variances.push_back(rater_variance(one, total));
+  text += item("    standard deviations (share of the variance): ", fmt::format("{}", fmt::join(variances, ", ")));
+  for (const reliability::Generalizability& one : raters.of_numbers) {
+    const reliability::Averaged& of = one.averaged;
+    const std::string what =
+        fmt::format("    {}, {}, {}: ", counted(of.raters, "rater", "raters"),
+                    counted(of.sessions, "session", "sessions"), counted(of.trials, "trial", "trials"));
+    if (one.support != Support::enough) {
+      text += item(what, one.support == Support::too_few_trials ? "the benefit of more trials is unknown"
+                                                                : "the benefit of more sessions is unknown");
+      continue;
+    }
+    text += item(
+        what,
+        fmt::format("Φ {} ({}), G {} ({}); {}{}", share(one.absolute), shares(one.absolute95), share(one.relative),
+                    shares(one.relative95), error_text("by any raters", one.absolute_error),
+                    std::isnan(one.same_raters.sem) ? "" : "; " + error_text("by the same raters", one.same_raters)));
+  }
+  return text;
+}
+
+/// Dependability of one trial by one rater in one session; "" where no rater is recorded.
+std::string raters_table(const std::vector<OutcomeReliability>& all) {
+  std::string text;
+  const std::string* condition = nullptr;
+  for (const OutcomeReliability& one : all) {
+    if (!one.raters) continue;
+    if (condition == nullptr || *condition != one.condition) {
+      condition = &one.condition;
+      text += fmt::format("\nreliability of one rater, {}\n  {:<23}  {:>5}  {:>5}  {:>13}  {:>7}  {:>7}  {}\n",
+                          condition_title(*condition), "outcome", "n×r", "Φ", "95 %", "SEM", "MDC", "unit");
+    }
+    const reliability::RaterModel& model = one.raters->model;
+    const std::string name = fmt::format("  {:<23}", one.outcome);
+    if (model.support != Support::enough) {
+      const bool few_raters = model.support == Support::too_few_raters;
+      text += item(name + "  ",
+                   why_not(model.support, few_raters ? model.repeated_participants : model.participants, "people"));
+      continue;
+    }
+    const reliability::Generalizability& found = one.raters->of_numbers.front();
+    text += name + fmt::format("  {:>5}  {:>5} {:>14}  {:>7}  {:>7}  {}\n",
+                               fmt::format("{}×{}", model.participants, model.raters), share(found.absolute),
+                               shares(found.absolute95), digits(found.absolute_error.sem),
+                               digits(found.absolute_error.mdc95), one.unit);
+  }
+  if (text.empty()) return text;
+  return text +
+         "\nn×r: people and raters. Φ: dependability of one trial by any one rater in one\n"
+         "session; SEM and MDC of that trial. The other tables take results of different\n"
+         "raters as trials. --outcome NAME shows variances and means of several raters.\n";
+}
+
 std::string details_of(const OutcomeReliability& one) {
   std::string text = fmt::format("\n{}, {}{}\n", one.outcome, condition_title(one.condition),
                                  one.unit.empty() ? "" : " [" + one.unit + "]");
@@ -255,6 +338,7 @@ std::string details_of(const OutcomeReliability& one) {
                                                        "people with two or more trials"));
   }
   text += model_details(one.mixed_model);
+  if (one.raters) text += rater_details(*one.raters);
   for (const std::string& note : one.notes) text += item("  ! ", note);
   return text;
 }
@@ -368,7 +452,7 @@ std::string reliability_text(const StudyStatistics& statistics, bool details) {
         "mean; MDC: 1.96 √2 SEM. Read an ICC below 0 as 0.\n"
         "--outcome NAME shows all forms, limits of agreement, trials, the mixed model.\n";
   }
-  return text;
+  return text + raters_table(statistics.reliability);
 }
 
 std::string comparison_text(const StudyStatistics& statistics, bool details) {

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/study/store/trial_names.h"
+
 namespace mbk::store {
 namespace {
 
@@ -41,9 +43,9 @@ bool is_identifying(const std::string& key) {
       "surname", "forename", "firstname", "lastname", "fullname", "initials", "birth", "birthday",  "birthdate", "dob",
       "ssn",     "mrn",      "insurance", "address",  "email",    "mail",     "phone", "telephone", "passport"};
   constexpr std::array<std::string_view, 3> kOf = {"name", "id", "identifier"};
-  constexpr std::array<std::string_view, 14> kPeople = {"patient", "subject",  "person",   "participant", "first",
+  constexpr std::array<std::string_view, 15> kPeople = {"patient", "subject",  "person",   "participant", "first",
                                                         "last",    "family",   "given",    "full",        "middle",
-                                                        "sur",     "operator", "examiner", "user"};
+                                                        "sur",     "operator", "examiner", "rater",       "user"};
   const std::vector<std::string> words = words_of(key);
   if (any_of(words, kAlone)) return true;
   if (words == std::vector<std::string>{"name"} || words == std::vector<std::string>{"patient"}) return true;
@@ -55,7 +57,8 @@ bool is_identifying(const std::string& key) {
 std::vector<std::string> identifying_entries(const std::map<std::string, std::string>& metadata) {
   std::vector<std::string> found;
   for (const auto& [key, value] : metadata) {
-    if (!value.empty() && is_identifying(key)) found.push_back(key);
+    const bool named = key == "rater" && !rater_code(value);
+    if (!value.empty() && (named || is_identifying(key))) found.push_back(key);
   }
   return found;
 }

@@ -16,6 +16,7 @@
 #include "mbk/files/contents/sha256.h"
 #include "mbk/study/store/store_database.h"
 #include "mbk/study/store/store_files.h"
+#include "mbk/study/store/trial_names.h"
 
 namespace mbk::store {
 namespace {
@@ -55,6 +56,9 @@ Result<void> check_facts(const TrialFacts& facts) {
   if (facts.condition.size() > kLongest || printable(facts.condition) != facts.condition) {
     return bad_usage("the condition is not one line of at most 80 bytes",
                      "give it a short name, as in --condition relaxed");
+  }
+  if (!facts.rater.empty() && rater_code(facts.rater) != facts.rater) {
+    return bad_usage("the rater is neither a number nor a short code", std::string(kRaterAdvice));
   }
   return {};
 }
@@ -240,11 +244,15 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
         const StoredRecording there = recording_at(row).recording;
         const TrialFacts& facts = one.trial;
         if (there.participant != facts.participant || there.session != facts.session ||
-            there.condition != facts.condition || (facts.trial && there.trial != *facts.trial)) {
+            there.condition != facts.condition || there.rater != facts.rater ||
+            (facts.trial && there.trial != *facts.trial)) {
           return bad_data(
               fmt::format(
-                  "the file is already stored as recording {}: participant {}, session {}, condition '{}', trial {}",
-                  there.number, there.participant, there.session, there.condition, there.trial),
+                  "the file is already stored as recording {}: participant {}, session {}, condition '{}', trial {}{}",
+                  there.number, there.participant, there.session, there.condition, there.trial,
+                  there.rater == facts.rater ? ""
+                  : there.rater.empty()      ? ", without a rater"
+                                             : ", rater " + there.rater),
               "a recording can belong to only one participant: check the number and the file");
         }
         added.push_back({there, true});
@@ -265,21 +273,22 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
            .duration_s = one.duration_s,
            .added = utc_now(),
            .origin_sha256 = origin_sha256,
-           .excluded_why = std::nullopt};
+           .excluded_why = std::nullopt,
+           .rater = one.trial.rater};
       if (!one.trial.trial) {
         auto next = query(connection,
                           "SELECT coalesce(max(trial), 0) + 1 FROM recording "
-                          "WHERE participant = ? AND session = ? AND condition = ?",
-                          r.participant, r.session, r.condition);
+                          "WHERE participant = ? AND session = ? AND condition = ? AND rater = ?",
+                          r.participant, r.session, r.condition, r.rater);
         next.executeStep();
         r.trial = number_at(next, 0);
       }
       salted.salt = new_salt();
       execute(connection,
               "INSERT INTO recording(sha256, part, extension, bytes, participant, session, trial, condition, "
-              "duration_s, added, origin_sha256, salt) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+              "duration_s, added, origin_sha256, salt, rater) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
               r.sha256, r.part, r.extension, r.bytes, r.participant, r.session, r.trial, r.condition, r.duration_s,
-              r.added, r.origin_sha256, salted.salt);
+              r.added, r.origin_sha256, salted.salt, r.rater);
       r.number = connection.getLastInsertRowid();
       LogLine line{.role = role, .action = LoggedAction::add};
       line.recording = r.number;

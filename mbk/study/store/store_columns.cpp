@@ -56,15 +56,31 @@ double number_in(std::span<const std::byte> numbers, std::size_t k) {
 struct UsableResults {
   std::vector<std::int64_t> numbers;
   std::vector<TrialRow> trials;
-  std::vector<std::string> conditions;
+  std::vector<std::string> conditions, raters;
 };
+
+/// Gives each trial the place of its rater among the sorted codes.
+/// @param codes  of each trial; "": not recorded
+void set_raters(UsableResults& results, const std::vector<std::string>& codes) {
+  for (const std::string& code : codes) {
+    if (!code.empty()) results.raters.push_back(code);
+  }
+  std::ranges::sort(results.raters);
+  results.raters.erase(std::unique(results.raters.begin(), results.raters.end()), results.raters.end());
+  for (std::size_t k = 0; k < codes.size(); ++k) {
+    if (codes[k].empty()) continue;
+    const auto found = std::ranges::lower_bound(results.raters, codes[k]);
+    results.trials[k].rater = static_cast<int>(found - results.raters.begin());
+  }
+}
 
 UsableResults usable_results(const SQLite::Database& connection, std::int64_t analysis) {
   UsableResults results;
   std::map<std::string, int, std::less<>> known;
   std::vector<std::int64_t> first_recording;
+  std::vector<std::string> codes;
   auto rows = query(connection,
-                    "SELECT result.number, recording.number, participant, session, trial, condition FROM result "
+                    "SELECT result.number, recording.number, participant, session, trial, condition, rater FROM result "
                     "JOIN recording ON recording.number = recording WHERE analysis = ? AND usable = 1 AND "
                     "excluded_why IS NULL ORDER BY result.number",
                     analysis);
@@ -81,6 +97,7 @@ UsableResults usable_results(const SQLite::Database& connection, std::int64_t an
         {number_at(rows, 1), number_at(rows, 2), number_at(rows, 3), number_at(rows, 4), found->second});
     std::int64_t& first = first_recording[static_cast<std::size_t>(found->second)];
     first = std::min(first, results.trials.back().recording);
+    codes.push_back(text_at(rows, 6));
   }
   // conditions in the order of the recordings
   std::vector<std::size_t> order(results.conditions.size());
@@ -94,6 +111,7 @@ UsableResults usable_results(const SQLite::Database& connection, std::int64_t an
   }
   results.conditions = std::move(conditions);
   for (TrialRow& trial : results.trials) trial.condition = place[static_cast<std::size_t>(trial.condition)];
+  set_raters(results, codes);
   return results;
 }
 
@@ -206,6 +224,7 @@ Result<OutcomeColumns> Store::columns(std::int64_t analysis) const {
     UsableResults results = usable_results(connection, analysis);
     OutcomeColumns columns;
     columns.conditions = std::move(results.conditions);
+    columns.raters = std::move(results.raters);
     columns.trials = std::move(results.trials);
     const std::vector<std::size_t> places = places_of(columns.trials);
     ColumnsOfLayouts layouts(connection, columns);

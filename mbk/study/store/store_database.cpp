@@ -74,6 +74,10 @@ CREATE TABLE packed(
   result INTEGER PRIMARY KEY REFERENCES result(number) ON DELETE CASCADE,
   layout INTEGER NOT NULL REFERENCES layout(number), numbers BLOB NOT NULL) STRICT;
 DROP TABLE outcome;
+)",
+    // who measured
+    R"(
+ALTER TABLE recording ADD COLUMN rater TEXT NOT NULL DEFAULT '';
 )"};
 
 int pragma_number(SQLite::Database& connection, const char* pragma) {
@@ -269,13 +273,16 @@ SaltedRecording recording_at(const SQLite::Statement& row) {
   r.origin_sha256 = text_at(row, 11);
   if (!row.getColumn(12).isNull()) r.excluded_why = text_at(row, 12);
   one.salt = text_at(row, 13);
+  r.rater = text_at(row, 14);
   return one;
 }
 
 std::string digest_of(const SaltedRecording& salted) {
   const StoredRecording& r = salted.recording;
-  return sum_of(Json::array({salted.salt, r.number, r.sha256, r.part, r.extension, r.bytes, r.participant, r.session,
-                             r.trial, r.condition, r.duration_s, r.added, r.origin_sha256}));
+  Json facts = Json::array({salted.salt, r.number, r.sha256, r.part, r.extension, r.bytes, r.participant, r.session,
+                            r.trial, r.condition, r.duration_s, r.added, r.origin_sha256});
+  if (!r.rater.empty()) facts.push_back(r.rater);  // the digests of recordings without a rater are those of before
+  return sum_of(facts);
 }
 
 std::string digest_of(const std::string& salt, const std::string& options_sha256, const std::string& version,

@@ -186,7 +186,7 @@ struct SaltedRecording {
 /// The columns that `recording_at` reads.
 inline constexpr const char* kRecordingColumns =
     "number, sha256, part, extension, bytes, participant, session, trial, condition, duration_s, added, "
-    "origin_sha256, excluded_why, salt";
+    "origin_sha256, excluded_why, salt, rater";
 
 [[nodiscard]] SaltedRecording recording_at(const SQLite::Statement& row);
 

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <map>
 
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/study/store/store_files.h"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Pair;
 using testing::SizeIs;
 
 TrialFacts of(std::int64_t participant, std::string condition = "relaxed") {
@@ -209,7 +211,8 @@ TEST(AStudyOfTheTablesBefore, HasItsNumbersPacked) {
   }
   change_by_hand(
       folder / "study",
-      "DROP TABLE packed; DROP TABLE layout; CREATE TABLE outcome(result INTEGER NOT NULL, position INTEGER NOT NULL, "
+      "ALTER TABLE recording DROP COLUMN rater; DROP TABLE packed; DROP TABLE layout; CREATE TABLE outcome(result "
+      "INTEGER NOT NULL, position INTEGER NOT NULL, "
       "name TEXT NOT NULL, value REAL NOT NULL, standard_error REAL, unit TEXT NOT NULL, PRIMARY KEY (result, "
       "position)) STRICT, WITHOUT ROWID; INSERT INTO outcome VALUES (1, 0, 'K', 100, 3, 'N/m'); "
       "PRAGMA user_version = 1");
@@ -218,6 +221,50 @@ TEST(AStudyOfTheTablesBefore, HasItsNumbersPacked) {
   EXPECT_EQ(study->columns(1).value().trials.size(), 1U);
   EXPECT_FALSE(study->outcomes(1).value().empty());
   EXPECT_THAT(checked(*study).problems, IsEmpty());
+}
+
+TEST(AStudyOfTheTablesBefore, HasNoRatersAndTheDigestsOfBefore) {
+  const TestFolder folder;
+  {
+    Store study = new_study(folder / "study");
+    ASSERT_TRUE(add(study, folder.file("a", "a"), of(1)));
+    ASSERT_TRUE(measure(study));
+  }
+  change_by_hand(folder / "study", "ALTER TABLE recording DROP COLUMN rater; PRAGMA user_version = 2");
+  auto study = Store::open(folder / "study");
+  ASSERT_TRUE(study) << study.error().line();
+  EXPECT_EQ(study->recording(1)->rater, "");
+  EXPECT_THAT(study->columns(1)->raters, IsEmpty());
+  EXPECT_EQ(study->columns(1)->trials.at(0).rater, -1);
+  EXPECT_THAT(checked(*study).problems, IsEmpty());
+  ASSERT_TRUE(add(*study, folder.file("b", "b"), TrialFacts{1, 1, "relaxed", {}, "A"}));
+  EXPECT_THAT(checked(*study).problems, IsEmpty());
+}
+
+TEST(AStudy, KeepsTheRaterAndNumbersTheTrialsOfEach) {
+  const TestFolder folder;
+  Store study = new_study(folder / "study");
+  std::vector<std::int64_t> trials;
+  int n = 0;
+  for (const char* rater : {"B", "A", "B", "", "A"}) {
+    const auto added = add(study, folder.file("f", std::to_string(n++)), TrialFacts{7, 1, "relaxed", {}, rater});
+    ASSERT_TRUE(added) << added.error().line();
+    EXPECT_EQ(added->front().recording.rater, rater);
+    trials.push_back(added->front().recording.trial);
+  }
+  EXPECT_THAT(trials, testing::ElementsAre(1, 1, 2, 1, 2));
+  ASSERT_TRUE(measure(study));
+  const OutcomeColumns columns = study.columns(1).value();
+  EXPECT_THAT(columns.raters, testing::ElementsAre("A", "B"));
+  std::map<std::int64_t, int> raters;
+  for (const TrialRow& trial : columns.trials) raters[trial.recording] = trial.rater;
+  EXPECT_THAT(raters, testing::ElementsAre(Pair(1, 1), Pair(2, 0), Pair(3, 1), Pair(4, -1), Pair(5, 0)));
+  const auto other = add(study, folder.file("f", "0"), TrialFacts{7, 1, "relaxed", {}, "C"});
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error().message, HasSubstr("rater B"));
+  for (const char* name : {"Jane", "JD", "a", "R02", "0"}) {
+    EXPECT_FALSE(add(study, folder.file("g", "g"), TrialFacts{7, 1, "relaxed", {}, name})) << name;
+  }
 }
 
 TEST(AForgottenParticipant, LeavesOnlyTheFact) {
@@ -291,6 +338,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Change{"Participant", "UPDATE recording SET participant = 9 WHERE number = 1", "recording 1"},
         Change{"Condition", "UPDATE recording SET condition = 'stiff' WHERE number = 1", "recording 1"},
+        Change{"Rater", "UPDATE recording SET rater = 'A' WHERE number = 1", "recording 1"},
         Change{"Exclusion", "UPDATE recording SET excluded_why = NULL", "recording 2"},
         Change{"Reason", "UPDATE recording SET excluded_why = 'tired' WHERE number = 2", "recording 2"},
         Change{"Recording", "PRAGMA foreign_keys = ON; DELETE FROM recording WHERE number = 1", "recording 1"},

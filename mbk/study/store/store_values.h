@@ -47,10 +47,12 @@ struct StudyFacts {
 
 /// Whose trial a recording is.
 struct TrialFacts {
-  std::int64_t participant = 0;       ///< > 0
-  std::int64_t session = 1;           ///< > 0
-  std::string condition;              ///< "relaxed"; may be empty
-  std::optional<std::int64_t> trial;  ///< > 0; absent: the next one of this participant, session and condition
+  std::int64_t participant = 0;  ///< > 0
+  std::int64_t session = 1;      ///< > 0
+  std::string condition;         ///< "relaxed"; may be empty
+  /// > 0; absent: the next one of this participant, session, condition and rater
+  std::optional<std::int64_t> trial;
+  std::string rater = {};  ///< who measured, as rater_code() writes it; "": not recorded
 };
 
 /// A recording to be stored: one of those that a file holds.
@@ -74,6 +76,7 @@ struct StoredRecording {
   std::string added;                        ///< UTC: "2026-05-04T09:30:12Z"
   std::string origin_sha256;                ///< of the file that the stored one was made of; equal where it is a copy
   std::optional<std::string> excluded_why;  ///< present where it is excluded
+  std::string rater;                        ///< a code; "": not recorded
 };
 
 /// One way of measuring: results that may be compared.
@@ -122,6 +125,7 @@ struct StoredResult {
 struct TrialRow {
   std::int64_t recording = 0, participant = 0, session = 0, trial = 0;
   int condition = 0;  ///< index into OutcomeColumns::conditions
+  int rater = -1;     ///< index into OutcomeColumns::raters; −1: not recorded
 };
 
 /// One outcome of every trial.
@@ -136,6 +140,7 @@ struct OutcomeColumns {
   std::vector<std::string> conditions;  ///< in the order of the recordings' numbers
   std::vector<TrialRow> trials;         ///< by participant, session, trial and recording
   std::vector<OutcomeColumn> outcomes;
+  std::vector<std::string> raters = {};  ///< codes, sorted; empty where no rater is recorded
 };
 
 /// A line of the log.

@@ -42,6 +42,7 @@ void describe(Fields<StoredRecording>& fields) {
   fields.add("session", &StoredRecording::session);
   fields.add("condition", &StoredRecording::condition);
   fields.add("trial", &StoredRecording::trial);
+  fields.add_unless_empty("rater", &StoredRecording::rater, "code of who measured, if recorded");
   fields.add_number("duration_s", &StoredRecording::duration_s, "[s]");
   fields.add("sha256", &StoredRecording::sha256, "of the stored file");
   fields.add("part", &StoredRecording::part, "record of the file, from 1; 0: its only record");
@@ -210,15 +211,17 @@ std::string to_json(const CheckReport& report) {
 }
 
 Result<std::string> export_csv(const Store& study, const StudyList& list) {
-  std::string text =
-      "participant,session,condition,trial,recording,sha256,analysis,version,state,reason,outcome,value,standard_error,"
-      "unit\n";
+  const bool raters = list.has_raters();
+  std::string text = fmt::format(
+      "participant,session,condition,trial,{}recording,sha256,analysis,version,state,reason,outcome,value,"
+      "standard_error,unit\n",
+      raters ? "rater," : "");
   for (const ListedRecording& one : list.recordings) {
     const StoredRecording& r = one.recording;
-    const std::string begin =
-        fmt::format("{},{},{},{},{},{},{},{},{},{}", r.participant, r.session, csv_field(r.condition), r.trial,
-                    r.number, r.sha256, list.analysis ? fmt::format("{}", list.analysis->number) : "",
-                    list.analysis ? list.analysis->version : "", word_of(one.state), csv_field(one.reason));
+    const std::string begin = fmt::format(
+        "{},{},{},{},{}{},{},{},{},{},{}", r.participant, r.session, csv_field(r.condition), r.trial,
+        raters ? r.rater + "," : "", r.number, r.sha256, list.analysis ? fmt::format("{}", list.analysis->number) : "",
+        list.analysis ? list.analysis->version : "", word_of(one.state), csv_field(one.reason));
     const auto outcomes = MBK_TRY(study.outcomes(one.result));
     if (outcomes.empty()) text += begin + ",,,,\n";
     for (const Outcome& outcome : outcomes) {

@@ -18,6 +18,10 @@ std::int64_t StudyList::participants() const {
   return std::ssize(all);
 }
 
+bool StudyList::has_raters() const {
+  return std::ranges::any_of(recordings, [](const ListedRecording& one) { return !one.recording.rater.empty(); });
+}
+
 Result<StudyList> list_study(const Store& study, std::optional<std::int64_t> analysis) {
   StudyList list;
   auto facts = MBK_TRY(study.facts());

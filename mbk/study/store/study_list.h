@@ -42,6 +42,7 @@ struct StudyList {
 
   [[nodiscard]] std::int64_t count(RecordingState state) const;
   [[nodiscard]] std::int64_t participants() const;
+  [[nodiscard]] bool has_raters() const;  ///< of any recording
 };
 
 /// @param analysis  its number; absent: the one that the newest result is of

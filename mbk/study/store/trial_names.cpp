@@ -12,16 +12,20 @@
 namespace mbk::store {
 namespace {
 
-constexpr std::array<std::string_view, 4> kFields = {"participant", "session", "condition", "trial"};
+constexpr std::array<std::string_view, 5> kFields = {"participant", "session", "condition", "trial", "rater"};
+constexpr std::string_view kBidsRater = "rater";  // an acquisition of a BIDS name begins so
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
+bool is_ascii_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
 /// Letters beyond ASCII too.
 bool is_word(char c) {
-  return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
-         static_cast<unsigned char>(c) >= 0x80;
+  return is_digit(c) || is_ascii_letter(c) || c == '-' || static_cast<unsigned char>(c) >= 0x80;
 }
 
 std::optional<std::int64_t> whole_number(std::string_view text) {
@@ -36,6 +40,10 @@ bool set_field(KnownFacts& facts, std::string_view field, const std::string& tex
   if (field == "condition") {
     facts.condition = text;
     return true;
+  }
+  if (field == "rater") {
+    facts.rater = rater_code(text);
+    return facts.rater.has_value();
   }
   auto& number = field == "participant" ? facts.participant : field == "session" ? facts.session : facts.trial;
   number = whole_number(text);
@@ -95,6 +103,7 @@ KnownFacts KnownFacts::or_else(const KnownFacts& other) const {
   if (!facts.session) facts.session = other.session;
   if (!facts.trial) facts.trial = other.trial;
   if (!facts.condition) facts.condition = other.condition;
+  if (!facts.rater) facts.rater = other.rater;
   return facts;
 }
 
@@ -103,7 +112,21 @@ Result<TrialFacts> KnownFacts::complete() const {
     return bad_usage("the participant is unknown: the metadata name none",
                      "pass --participant N, or 'mbk study import' with --pattern or --sheet");
   }
-  return TrialFacts{*participant, session.value_or(1), condition.value_or(""), trial};
+  return TrialFacts{*participant, session.value_or(1), condition.value_or(""), trial, rater.value_or("")};
+}
+
+std::optional<std::string> rater_code(std::string_view text) {
+  constexpr std::size_t kMaxLetters = 3;
+  constexpr std::int64_t kLargest = 999999999;
+  std::string code;
+  while (!text.empty() && is_ascii_letter(text.front())) {
+    code += static_cast<char>(text.front() >= 'a' ? text.front() - 'a' + 'A' : text.front());
+    text.remove_prefix(1);
+  }
+  if (text.empty()) return code.size() == 1 ? std::optional(code) : std::nullopt;
+  const auto number = whole_number(text);
+  if (code.size() > kMaxLetters || !number || *number > kLargest) return std::nullopt;
+  return code + std::to_string(*number);
 }
 
 Result<NamePattern> NamePattern::of(const std::string& pattern) {
@@ -124,7 +147,7 @@ Result<NamePattern> NamePattern::of(const std::string& pattern) {
       const std::string field = pattern.substr(at + 1, end == std::string::npos ? end : end - at - 1);
       if (std::ranges::find(kFields, field) == kFields.end() || end == std::string::npos) {
         return bad_usage(fmt::format("--pattern: {{{}}} is not a placeholder", field),
-                         "use {participant}, {session}, {condition}, {trial} and *");
+                         "use {participant}, {session}, {condition}, {trial}, {rater} and *");
       }
       if (known(field)) return bad_usage(fmt::format("--pattern contains {{{}}} twice", field), "omit one");
       made.pieces_.push_back({field, ""});
@@ -145,7 +168,8 @@ bool NamePattern::matches(std::string_view name, std::size_t piece, std::map<std
   if (field.empty()) return name.starts_with(text) && matches(name.substr(text.size()), piece + 1, found);
   std::size_t longest = 0;
   const auto belongs = [&field = field](char c) {
-    return field == "*" || (field == "condition" ? is_word(c) : is_digit(c));
+    return field == "*" ||
+           (field == "condition" ? is_word(c) : is_digit(c) || (field == "rater" && is_ascii_letter(c)));
   };
   while (longest < name.size() && belongs(name[longest])) ++longest;
   for (std::size_t length = longest + 1; length-- > (field == "*" ? 0U : 1U);) {
@@ -205,6 +229,10 @@ Result<Sheet> read_sheet(std::string_view text, const std::filesystem::path& fol
       if (names[k] == "file") row.file = folder / fields[k];
       if (std::ranges::find(kFields, names[k]) == kFields.end() || fields[k].empty()) continue;
       if (!set_field(row.facts, names[k], fields[k])) {
+        if (names[k] == "rater") {  // may be a name, which no message repeats
+          return fail(ErrorKind::data, "the rater is neither a number nor a short code", std::string(kRaterAdvice),
+                      where);
+        }
         return fail(ErrorKind::data, fmt::format("'{}' is not a whole number from 1", fields[k]),
                     "number participants, sessions and trials", where + ", " + names[k]);
       }
@@ -251,6 +279,10 @@ Result<KnownFacts> facts_of_bids(std::string_view name) {
                        "import its motion.tsv with a sheet (--sheet) that gives participant, session and trial");
     }
     (entity == "sub" ? facts.participant : entity == "ses" ? facts.session : facts.trial) = number;
+  }
+  if (acquisition.starts_with(kBidsRater)) {
+    facts.rater = rater_code(std::string_view(acquisition).substr(kBidsRater.size()));
+    if (facts.rater) acquisition.clear();
   }
   if (!acquisition.empty()) task += '-' + acquisition;
   if (!task.empty()) facts.condition = task == bids_label("") ? "" : task;

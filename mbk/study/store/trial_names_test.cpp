@@ -41,6 +41,40 @@ TEST(APattern, IsRefusedWhereItIsNone) {
   }
 }
 
+TEST(ARater, IsACodeAndNoName) {
+  for (const auto& [text, code] : std::map<std::string, std::string>{
+           {"2", "2"}, {"07", "7"}, {"a", "A"}, {"R2", "R2"}, {"pt02", "PT2"}, {"ABC999999999", "ABC999999999"}}) {
+    EXPECT_EQ(rater_code(text), code) << text;
+  }
+  for (const char* text : {"", "0", "Jo", "JD", "Jane", "Jane2", "A 1", "R-2", "R0", "2A", "é1", "A1000000000"}) {
+    EXPECT_FALSE(rater_code(text)) << text;
+  }
+}
+
+TEST(ARater, IsTakenFromNamesSheetsAndMetadata) {
+  const NamePattern pattern = NamePattern::of("p{participant}_{rater}_{trial}.h5").value();
+  EXPECT_EQ(pattern.match("p07_r02_3.h5")->rater, "R2");
+  EXPECT_FALSE(pattern.match("p07_Jane_3.h5"));
+  const Sheet sheet = read_sheet("file,participant,rater\na.h5,7,b\nb.h5,7,\n", "").value();
+  EXPECT_EQ(sheet.rows[0].facts.rater, "B");
+  EXPECT_FALSE(sheet.rows[1].facts.rater);
+  const Error refused = read_sheet("file,participant,rater\na.h5,7,Jane\n", "").error();
+  EXPECT_THAT(refused.where, HasSubstr("row 2"));
+  EXPECT_THAT(refused.line(), testing::Not(HasSubstr("Jane")));
+  EXPECT_EQ(facts_of({{"participant", "7"}, {"rater", "A"}}).rater, "A");
+  const KnownFacts bids = facts_of_bids("sub-07_ses-2_task-reach_acq-raterB_run-1").value();
+  EXPECT_EQ(bids.rater, "B");
+  EXPECT_EQ(bids.condition, "reach");
+  EXPECT_EQ(facts_of_bids("sub-07_task-reach_acq-raterjane")->condition, "reach-raterjane");
+}
+
+TEST(ARater, IdentifiesAPersonUnlessItIsACode) {
+  EXPECT_THAT(identifying_entries({{"rater", "Jane Doe"}}), ElementsAre("rater"));
+  EXPECT_THAT(identifying_entries({{"rater_name", "x"}}), ElementsAre("rater_name"));
+  EXPECT_THAT(identifying_entries({{"rater", "R2"}}), IsEmpty());
+  EXPECT_THAT(identifying_entries({{"rater", ""}}), IsEmpty());
+}
+
 TEST(ASheet, SaysWhoseEachFileIs) {
   const Sheet sheet = read_sheet(
                           "\xef\xbb\xbf"

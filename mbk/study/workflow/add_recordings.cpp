@@ -26,7 +26,7 @@ using Added = Result<std::vector<AddedRecording>>;
 
 bool alike(const KnownFacts& one, const KnownFacts& other) {
   return one.participant == other.participant && one.session == other.session && one.condition == other.condition &&
-         one.trial == other.trial;
+         one.trial == other.trial && one.rater == other.rater;
 }
 
 }  // namespace

@@ -96,6 +96,7 @@ void tell(Recording& recording, const store::StoredRecording& r) {
   recording.metadata["trial"] = fmt::format("{}", r.trial);
   recording.metadata.erase("condition");
   if (!r.condition.empty()) recording.metadata["condition"] = r.condition;
+  if (!r.rater.empty()) recording.metadata["rater"] = r.rater;
 }
 
 }  // namespace
@@ -124,7 +125,8 @@ Result<ExportedBids> export_bids(const store::Store& study, const store::StudyLi
     }
     tell(*recording, r);
     const std::string name =
-        fmt::format("sub-{:02}_ses-{}_task-{}_run-{}", r.participant, r.session, labels.at(r.condition), r.trial);
+        fmt::format("sub-{:02}_ses-{}_task-{}_{}run-{}", r.participant, r.session, labels.at(r.condition),
+                    r.rater.empty() ? "" : fmt::format("acq-rater{}_", r.rater), r.trial);
     MBK_TRY(recording::write_bids(*recording, made.path(), name, false, Readers::owner, list.facts.title));
     for (std::string& what : recording::lost_in_bids(*recording)) exported.lost.insert(std::move(what));
     ++exported.written;
