@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array kMemories = {0.02, 0.04, 0.06, 0.08, 0.12, 0.16, 0.2};  // [s]
 constexpr Index kFolds = 8;
-constexpr Index kRowsPerCoefficient = 20;
+constexpr Index kRowsOfResponse = 20;
 
 /// The lagged motion and what stands for it, in the directions in which that varies.
 struct Basis {
@@ -101,11 +101,11 @@ Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, con
     return rows_inside(signals.identification, signals.pieces, memory, memory);
   };
   while (memories.size() > 1 &&
-         row_count(rows_of_memory(memories.back())) < kRowsPerCoefficient * n * (2 * memories.back() + 1)) {
+         row_count(rows_of_memory(memories.back())) < kRowsOfResponse * n * (2 * memories.back() + 1)) {
     memories.pop_back();
   }
   const auto rows = rows_of_memory(memories.back());
-  const Index needed = kRowsPerCoefficient * n * (2 * memories.back() + 1);
+  const Index needed = kRowsOfResponse * n * (2 * memories.back() + 1);
   if (row_count(rows) < needed) {
     return bad_data(fmt::format("an impulse response of ±{:.0f} ms needs {} rows, but there are {}",
                                 1e3 * T * static_cast<double>(memories.back()), needed, row_count(rows)),

@@ -18,10 +18,10 @@ namespace {
 
 constexpr Index kPolynomialOrder = 2;
 constexpr Index kTerms = kPolynomialOrder + 1;
-constexpr Index kMinFreedom = 8;    ///< of the residual: its variance is known to about a third
-constexpr double kRounding = 1e-9;  ///< of the strongest line: a window without one more than that is not excited
-constexpr double kMaxChance = 1.0;  ///< power that noise alone would seem to explain, of its own
-constexpr double kTold = 1e-4;      ///< least pivot of the regressors, of columns of length 1
+constexpr Index kMinFreedom = 8;      ///< of the residual: its variance is known to about a third
+constexpr double kNotExcited = 1e-9;  ///< of the strongest line: a window without one more than that is not excited
+constexpr double kMaxChance = 1.0;    ///< power that noise alone would seem to explain, of its own
+constexpr double kTold = 1e-4;        ///< least pivot of the regressors, of columns of length 1
 
 /// Spectra of the signals of a trial: rows are outputs, inputs and, behind them, the reference; column k is line k.
 Eigen::MatrixXcd record_spectra(const ExplorationTrial& trial, Index samples, Index lines, bool with_reference) {
@@ -79,7 +79,7 @@ LocalFit local_fit(const std::vector<Eigen::MatrixXcd>& spectra, const Vector& s
   }
   LocalFit fit;
   const Vector length = K.colwise().norm().transpose();
-  if (!(length.minCoeff() > 0.0) || (length.head(inputs).array() <= kRounding * strongest.array()).any()) return fit;
+  if (!(length.minCoeff() > 0.0) || (length.head(inputs).array() <= kNotExcited * strongest.array()).any()) return fit;
   K = K * length.cwiseInverse().asDiagonal();
   const numeric::ComplexPivotedQr qr(K);
   if (!(qr.min_pivot() > kTold)) return fit;

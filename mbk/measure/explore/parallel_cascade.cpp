@@ -21,7 +21,7 @@ namespace {
 constexpr double kIntrinsicMemory = 0.04;  ///< [s]: no reflex is as fast (Kearney, Stein & Parameswaran 1997)
 constexpr double kEarliest = 0.04, kLatest = 0.2, kLongest = 0.99;  ///< lags of a reflex [s]
 constexpr Index kFolds = 8;
-constexpr Index kRowsPerCoefficient = 10;
+constexpr Index kRowsOfCascade = 10;
 constexpr double kChanceOfReflex = 0.001;  ///< of a linear limb to be credited with a reflex
 /// Of the error that stretch in the opposite direction leaves, a reflex predicts a tenth more. Limbs of two links
 /// without one: at most 0.04 (20 trials), since their geometry is not quite even; real ankles: 0.23 to 0.57.
@@ -101,7 +101,7 @@ class Cascade {
     const Index coefficients = n_ * (2 * L_ + 1) + (n_ + 1) * (last_ - first_ + 1);
     rows_ = rows_inside(s_.identification, s_.pieces, last_, L_);
     const Index count = row_count(rows_);
-    if (count < kRowsPerCoefficient * coefficients) {
+    if (count < kRowsOfCascade * coefficients) {
       result_.found = DelayedResponse::not_identifiable;
       result_.why = fmt::format("a response of up to {:.2f} s has {} coefficients, too many for {} rows of {:.3g} ms",
                                 kLongest, coefficients, count, 1e3 * T_);

@@ -13,12 +13,12 @@ namespace mbk::report {
 namespace stretch_lines {
 
 /// Scale and name of the position, speed and torque as they are shown.
-struct Shown {
+struct StretchUnits {
   double scale = 1.0;
   const char *position = "", *speed = "", *torque = "", *slope = "";
 };
 
-Shown shown_for(Motion motion) {
+StretchUnits shown_for(Motion motion) {
   if (motion == Motion::rotation) return {kDegrees, "°", "°/s", "N·m", "N·m·s/rad"};
   return {kMillimetres, " mm", " mm/s", "N", "N·s/m"};
 }
@@ -30,7 +30,7 @@ std::string with_limits(const StretchValue& value, int decimals, double scale = 
                             scale * value.interval95->second, decimals);
 }
 
-std::string catch_text(const StretchSpeed& speed, bool slowest, const Shown& shown) {
+std::string catch_text(const StretchSpeed& speed, bool slowest, const StretchUnits& shown) {
   if (slowest) return "(passive curve)";
   if (speed.catch_angle) return with_limits(*speed.catch_angle, 1, shown.scale) + shown.position;
   return speed.catch_finding == CatchFinding::none ? "no catch" : "not judged";
@@ -48,7 +48,7 @@ std::string verdict_text(const StretchDirection& found) {
   return "cannot be judged: " + found.verdict_reason;
 }
 
-std::string direction_lines(const StretchDirection& found, const Shown& shown) {
+std::string direction_lines(const StretchDirection& found, const StretchUnits& shown) {
   std::vector<std::vector<std::string>> rows = {
       {"speed", "stretches", "mean torque, " + std::string(shown.torque), "angle of catch", "work of the loop, J"}};
   for (std::size_t k = 0; k < found.speeds.size(); ++k) {
@@ -78,7 +78,7 @@ std::string direction_lines(const StretchDirection& found, const Shown& shown) {
 
 std::string stretch_text(const StretchEstimate& found, Motion motion) {
   using namespace stretch_lines;
-  const Shown shown = shown_for(motion);
+  const StretchUnits shown = shown_for(motion);
   std::string text;
   for (const StretchDirection& one : found.directions) text += (text.empty() ? "" : "\n") + direction_lines(one, shown);
   text += "\nwhat these data cannot show\n";

@@ -15,6 +15,7 @@ import { elementHeads, matrixRows } from "./matrix_rows";
 import { nyquist } from "./nyquist";
 import { saveable } from "./picture";
 import { verdict, warningsSection } from "./summary";
+import { emgSection, stretchSection, toneSentences } from "./tone";
 
 const methods: Record<FrequencyResponseEstimate["method"], string> = {
   welch: "averaged spectra (Welch)",
@@ -48,7 +49,7 @@ const axisOf = (axes: number, k: number): string => (axes === 1 ? "" : ` ${axisN
 const pairsOf = (axes: number): string[] => axisNames(axes).flatMap((motion) => axisNames(axes).map((force) => force + motion));
 
 export function explorationHead({ result, note }: ExplorationReport): HTMLElement {
-  const title = ofForce(result) ? "Force response to motion" : "Output response to input";
+  const title = result.stretch ? "Resistance to stretches" : result.emg ? "EMG after perturbations" : ofForce(result) ? "Force response to motion" : "Output response to input";
   const response = result.frequency_response;
   document.title = `${result.inputs.map((input) => basename(input.file)).join(", ")} – explored`;
   return h("header", { class: "page-head" },
@@ -102,6 +103,7 @@ function summary(report: ExplorationReport): HTMLElement {
     impulse ? modelSentence(impulse) : undefined,
     cascade ? reflexSentence(cascade) : undefined,
     result.time_course?.verdict === "changes" ? "The limb changes during the recording; results for the whole recording are averages." : undefined,
+    ...toneSentences(result),
   ].filter((one): one is string => one !== undefined);
   return h("section", { id: "summary" }, heading(2, "Summary"),
     h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
@@ -402,6 +404,8 @@ export function explorationSections(report: ExplorationReport): HTMLElement[] {
     result.after_onset ? onsetSection(result.after_onset, result, units) : undefined,
     result.servo_displacement ? reachSection(result.servo_displacement, result, units) : undefined,
     result.ramp_and_hold ? plateauSection(result.ramp_and_hold, result, units) : undefined,
+    result.emg ? emgSection(result.emg) : undefined,
+    result.stretch ? stretchSection(result.stretch, result) : undefined,
     provenance(report.result),
   ].filter((section): section is HTMLElement => section !== undefined);
 }
