@@ -17,7 +17,7 @@
 #include "mbk/study/reliability/heavy_tails.h"
 
 namespace mbk::reliability {
-namespace {
+namespace rater_model {
 
 using enum FacetTerm;
 
@@ -503,9 +503,10 @@ std::pair<double, Interval> coefficient_by(const RaterModel& model, const Vector
            coefficient(1.0 / numeric::f_quantile(1.0 - kTail95, second, first))}};
 }
 
-}  // namespace
+}  // namespace rater_model
 
 Result<RaterModel> fit_raters(const Ratings& ratings) {
+  using namespace rater_model;
   const auto N = static_cast<std::size_t>(ratings.values.size());
   if (ratings.participants.size() != N || ratings.raters.size() != N || ratings.sessions.size() != N) {
     return bad_data("values, participants, raters and sessions have different lengths", "give one of each per row");
@@ -542,6 +543,7 @@ Result<RaterModel> fit_raters(const Ratings& ratings) {
 }
 
 Result<Generalizability> generalizability(const RaterModel& model, const Averaged& averaged) {
+  using namespace rater_model;
   if (averaged.raters < 1 || averaged.sessions < 1 || averaged.trials < 1) {
     return bad_usage("a mean is over at least one rater, session and trial", "give numbers from 1");
   }

@@ -70,6 +70,11 @@ std::optional<RaterReliability> rater_reliability(const store::OutcomeColumns& c
     notes.emplace_back(
         "each rater has sessions of their own: differences between sessions are part of those between raters");
   }
+  if (result.model.session_facet == reliability::SessionFacet::too_few && result.model.sessions > 1) {
+    notes.push_back(
+        fmt::format("fewer than {} people have two sessions: the variances of raters take sessions as trials",
+                    reliability::kMinPeople));
+  }
   std::vector<reliability::Averaged> numbers = {{1, 1, 1}};
   const auto add = [&](const reliability::Averaged& one) {
     const bool there = std::ranges::any_of(numbers, [&](const auto& other) { return alike_numbers(one, other); });

@@ -125,6 +125,14 @@ TEST(RatersOfAStudy, LeaveOutResultsWithoutARaterAndSaySo) {
   EXPECT_THAT(one.notes, testing::Contains(StartsWith("2 results name no rater")));
 }
 
+TEST(RatersOfAStudy, TakeTheSessionsOfAFewPeopleAsTrials) {
+  auto columns = rated(2);
+  for (store::TrialRow& trial : columns.trials) trial.session = trial.participant <= 4 ? trial.session : 1;
+  const OutcomeReliability one = study_statistics(columns).value().reliability.at(0);
+  EXPECT_EQ(one.raters->model.session_facet, reliability::SessionFacet::too_few);
+  EXPECT_THAT(one.notes, testing::Contains(StartsWith("fewer than 5 people have two sessions")));
+}
+
 TEST(RatersOfAStudy, AreTooFewWhereOneMeasuresAll) {
   auto columns = rated(2);
   for (store::TrialRow& trial : columns.trials) trial.rater = 0;
