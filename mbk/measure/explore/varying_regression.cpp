@@ -13,7 +13,7 @@ namespace {
 
 constexpr Index kCells = 48;
 constexpr Index kEven[] = {2, 3, 4, 6, 8, 12, 16, 24};  ///< intervals at equal distances that are tried
-constexpr Index kRowsPerCoefficient = 5;
+constexpr Index kRowsOfVarying = 5;
 constexpr Index kMaxOrder = 25;
 constexpr int kMoves = 24;
 constexpr std::size_t kMaxFirstKnots = 11;  ///< knots from which moving them begins
@@ -291,7 +291,7 @@ class Chooser {
       std::optional<Products> own;
       for (std::size_t k = 0; k < varying.size(); ++k) {
         const Index count = p_ + (T.rows() - 1) * varying[k];
-        if (count * kRowsPerCoefficient > fine.rows || !std::isfinite(all[k])) {
+        if (count * kRowsOfVarying > fine.rows || !std::isfinite(all[k])) {
           all[k] = std::numeric_limits<double>::infinity();
           continue;
         }
@@ -310,7 +310,7 @@ class Chooser {
     const Matrix T = in_finer_splines(basis, fine_);
     const auto rows = static_cast<double>(parts.front().varying.rows);
     const Index count = p_ + (T.rows() - 1) * varying;
-    if (count * kRowsPerCoefficient > parts.front().varying.rows) return std::numeric_limits<double>::infinity();
+    if (count * kRowsOfVarying > parts.front().varying.rows) return std::numeric_limits<double>::infinity();
     double sum = static_cast<double>(basis.knots.size()) * std::log(rows);
     for (const SplitProducts& one : parts) {
       const auto rest = rest_of(one, T, varying);
