@@ -56,10 +56,13 @@ std::optional<double> crossing(const Schedule& schedule, const Stretches::Stretc
     const Jet<AxesVector> joint = schedule.at(t);
     return direction * (home + joint.value[0] + muscle.velocity_gain * joint.first[0] - *muscle.threshold);
   };
-  if (beyond(stretch.onset) > 0.0) return std::nullopt;
-  for (double t = stretch.onset; t < stretch.still; t += kStep) {
-    const double before = beyond(t), after = beyond(t + kStep);
-    if (after > 0.0) return t + kStep * before / (before - after);
+  double before = beyond(stretch.onset);
+  if (before > 0.0) return std::nullopt;
+  const int steps = static_cast<int>(std::ceil((stretch.still - stretch.onset) / kStep));
+  for (int i = 1; i <= steps; ++i) {
+    const double t = stretch.onset + i * kStep, after = beyond(t);
+    if (after > 0.0) return t - kStep * after / (after - before);
+    before = after;
   }
   return std::nullopt;
 }
