@@ -25,6 +25,7 @@
 #include "mbk/measure/calibration/force_sensor.h"
 #include "mbk/model/perturbation/schedule_plan.h"
 #include "mbk/model/trial/arm_posture.h"
+#include "mbk/model/trial/emg_estimate.h"
 #include "mbk/model/trial/frequency_response.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
 #include "mbk/model/trial/identification.h"
@@ -83,12 +84,11 @@ using Enumerations =
                Exhibit::Kind, ForceSource, FrequencyResponseMethod, InputHold, InstrumentMotion, Method, Mode,
                MotionOutcome, ParametersFrom, Procedure, Protocol, Provenance, Readers, ReferenceQuantity, RobotMethod,
                SensorWarningCode, StabilityCondition, StabilityVerdict, Structure, TransferFunctionMethod,
-               VelocityDependence, Verdict, WarningCode,
-               journal::Ending::How, recording::Format, calibration::SensorFrame, teleop::Architecture, teleop::Form,
-               teleop::SimulatedArm::Kind, control::Phase, device::Motors, device::Wiring::Frame, drivers::Refusal,
-               drivers::BridgeRule, drivers::RuleVerdict, safety::Reason, safety::MotorsOff::State, protocol::Machine,
-               console::Action, console::Question, console::Refusal, ElbowSide, validation::Force,
-               validation::TrialKind>;
+               VelocityDependence, Verdict, WarningCode, journal::Ending::How, recording::Format,
+               calibration::SensorFrame, teleop::Architecture, teleop::Form, teleop::SimulatedArm::Kind, control::Phase,
+               device::Motors, device::Wiring::Frame, drivers::Refusal, drivers::BridgeRule, drivers::RuleVerdict,
+               safety::Reason, safety::MotorsOff::State, protocol::Machine, console::Action, console::Question,
+               console::Refusal, ElbowSide, validation::Force, validation::TrialKind>;
 
 std::vector<Table> tables() {
   return tables_of(std::type_identity<Enumerations>());
