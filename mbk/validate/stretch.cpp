@@ -106,16 +106,14 @@ Result<ValidationTable> stretch_study(const StudyOptions& options) {
     held.insert(held.end(), run.catch_held.begin(), run.catch_held.end());
     error.insert(error.end(), run.catch_error.begin(), run.catch_error.end());
     after.insert(after.end(), run.catch_after_onset.begin(), run.catch_after_onset.end());
-    if (run.threshold_found) {
-      threshold.push_back(run.threshold_error);
-    }
+    if (run.threshold_found) threshold.push_back(run.threshold_error);
   }
   const auto is = [](bool one) { return one; };
   table.rows.push_back(share_row("spastic: catch found, of all speeds above the slowest", found, is, std::nullopt));
   table.rows.push_back(share_row("spastic: 95 % interval holds the angle of catch", held, is, kNominal));
   if (error.size() > 1) {
     table.rows.push_back(
-        mean_row("angle of catch less that of repetitions without number", as_vector(error), Range{-0.5, 0.5}, "deg"));
+        mean_row("angle of catch less that of repetitions without number", as_vector(error), Range{-1.0, 1.0}, "deg"));
     table.rows.push_back(
         mean_row("angle of catch less that at which reflex torque begins", as_vector(after), std::nullopt, "deg"));
   }
@@ -125,8 +123,7 @@ Result<ValidationTable> stretch_study(const StudyOptions& options) {
   }
   table.notes = {
       "The angle of catch is that of the best-fitting curve that is flat, rises and is flat again, applied to "
-      "stretches "
-      "without noise; muscle and slowest stretch move it from the angle at which the reflex torque begins."};
+      "stretches without noise; muscle and slowest stretch move it from the angle at which the reflex torque begins."};
   return table;
 }
 

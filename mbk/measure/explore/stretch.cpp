@@ -498,8 +498,7 @@ void extrapolate_threshold(const std::vector<double>& speeds, const std::vector<
   const bool outside = at_rest < found.range.first || at_rest > found.range.second;
   found.threshold_note = fmt::format(
       "extrapolated from the torque at {} speeds, without an interval: a reflex in the slowest stretches and the "
-      "rounded "
-      "rise of torque move it, in simulation by 4.5° towards the start; use the onset of EMG{}",
+      "rounded rise of torque move it, in simulation by 4.5° towards the start; use the onset of EMG{}",
       found_at, outside ? "; it is outside the analysed angles" : "");
 }
 
