@@ -491,17 +491,15 @@ void extrapolate_threshold(const std::vector<double>& speeds, const std::vector<
   const Vector v = Vector::Map(speeds.data(), static_cast<Index>(speeds.size()));
   const Vector y = Vector::Map(angles.data(), static_cast<Index>(angles.size()));
   const Vector centred = v.array() - v.mean();
-  const double n = static_cast<double>(v.size()), slope = centred.dot(y) / centred.squaredNorm();
-  const Vector residual = (y.array() - y.mean()).matrix() - slope * centred;
-  Estimated at_rest{y.mean() - slope * v.mean(), 0.0, n - 2.0};
-  at_rest.error =
-      std::sqrt(residual.squaredNorm() / (n - 2.0) * (1.0 / n + v.mean() * v.mean() / centred.squaredNorm()));
-  found.reflex_threshold = at_rest.shown();
+  const double slope = centred.dot(y) / centred.squaredNorm();
+  const double at_rest = y.mean() - slope * v.mean();
+  found.reflex_threshold = StretchValue{at_rest, std::nullopt};  // errors of the model exceed the scatter
   found.threshold_shift = slope;
-  const bool outside = at_rest.value < found.range.first || at_rest.value > found.range.second;
+  const bool outside = at_rest < found.range.first || at_rest > found.range.second;
   found.threshold_note = fmt::format(
-      "from torque at {} speeds; the delay of reflex and muscle changes the slope, not the threshold at rest{}",
-      found_at, outside ? "; it is outside the analysed angles, so this is an extrapolation" : "");
+      "extrapolated from the torque at {} speeds, without an interval: a reflex in the slowest stretches and the "
+      "rounded rise of torque move it, in simulation by 4.5° towards the start; use the onset of EMG{}",
+      found_at, outside ? "; it is outside the analysed angles" : "");
 }
 
 /// What the limb absorbs in each stretch that is followed by a return at the same speed, by group.

@@ -34,7 +34,8 @@ struct StretchOptions {
 /// Catch: the same two tests of one speed against the slowest, at 5 % over all speeds. Its angle is the start of the
 /// best-fitting curve that is flat, rises along a line and is flat again, mean over repetitions; its interval includes
 /// the passive curve's uncertainty by jackknife. The threshold at rest is extrapolated from three or more of them over
-/// speed (Levin & Feldman 1994, Brain Res 657:23; Calota, Feldman & Levin 2008, Clin Neurophysiol 119:2329).
+/// speed (Levin & Feldman 1994, Brain Res 657:23; Calota, Feldman & Levin 2008, Clin Neurophysiol 119:2329). It has no
+/// interval: from torque it is biased (docs/theory/stretch.md).
 /// @param trials  whole recordings of one limb, each of one or more movements
 /// @fails  data: fewer than two movements with constant velocity; no common angles. usage: an empty range.
 [[nodiscard]] Result<StretchEstimate> stretch(std::span<const ExplorationTrial> trials, const StretchOptions& options,

@@ -7,7 +7,8 @@ import { type Chart, figure, styleOf } from "./charts";
 const known = (value: Value | undefined): number => value ?? NaN;
 
 /** "+" and "−" with one axis; in the plane the angle from x. */
-function directionName({ direction }: { direction: Value[] }, axes: number): string {
+function directionName({ direction }: { direction: Value[] }): string {
+  const axes = direction.length;
   if (axes === 1) return known(direction[0]) > 0 ? "+" : "−";
   if (axes === 2) return `${fixed((Math.atan2(known(direction[1]), known(direction[0])) * 180) / Math.PI, 0)}°`;
   return `[${direction.map((one) => fixed(one, 2)).join(", ")}]`;
@@ -26,7 +27,7 @@ function emgChart(found: EmgEstimate, channel: EmgChannel): Chart {
       title: channel.name,
       unit: "EMG / background",
       series: channel.directions.map((one, k) => ({
-        name: `direction ${directionName(one, found.axes)}`,
+        name: `direction ${directionName(one)}`,
         x: found.curve_time_s.map((time) => (time === null ? null : 1000 * time)),
         y: one.curve.map((value) => (value === null ? null : value / known(one.background))),
         style: styleOf(k),
@@ -39,7 +40,7 @@ export function emgSection(found: EmgEstimate): HTMLElement {
   const analysed = found.channels.filter((channel) => channel.usable);
   const rows = analysed.flatMap((channel) => channel.directions.map((one) => [
     channel.name,
-    `${directionName(one, found.axes)} (${one.trials})`,
+    `${directionName(one)} (${one.trials})`,
     one.latency
       ? h("span", {}, data(one.latency.value_s, milliseconds(one.latency.value_s), `latency-${channel.name}`), ` [${milliseconds(one.latency.interval95[0])}, ${milliseconds(one.latency.interval95[1])}]`)
       : one.windows.some(({ response }) => response === "increase") ? "no clear beginning" : "no response",
