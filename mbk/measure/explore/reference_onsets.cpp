@@ -25,7 +25,8 @@ std::vector<Onset> reference_onsets(const Matrix& reference, Index rest) {
   std::optional<Index> before;  // a sample of the rest that the pulse left which is not over yet
   for (std::size_t k = 0; k < rests.size(); ++k) {
     if (rests[k].end == rows) break;
-    const Index from = rests[k].begin, to = k + 1 < rests.size() ? rests[k + 1].begin : rows - 1;
+    // At its end a reference rests where it was slowly coming to.
+    const Index from = rests[k].end - 1, to = k + 1 < rests.size() ? rests[k + 1].end - 1 : rows - 1;
     if (before && !differs(to, *before)) {
       before.reset();
       continue;

@@ -39,6 +39,15 @@ TEST(ReferenceOnsets, TakeARampForOneMovement) {
   EXPECT_EQ(onsets[0].step[0], 1.0);
 }
 
+TEST(ReferenceOnsets, ArriveSlowlyAtTheEndOfAPulse) {
+  Vector pulses = levels({{100, 2.0}, {250, 0.0}, {400, 2.0}, {520, 0.0}}, 700);
+  for (const Index back : {250, 520}) pulses.segment(back, 2) << 3e-6, 1.5e-6;  // steps within rounding of a rest
+  const auto onsets = reference_onsets(pulses, kRest);
+  ASSERT_EQ(onsets.size(), 2u);
+  EXPECT_EQ(onsets[1].sample, 400);
+  EXPECT_EQ(onsets[1].step[0], 2.0);
+}
+
 TEST(ReferenceOnsets, NeedARestBefore) {
   EXPECT_TRUE(reference_onsets(levels({{30, 1.0}}, 300), kRest).empty());
   EXPECT_TRUE(reference_onsets(Matrix::Zero(300, 2), kRest).empty());

@@ -24,6 +24,7 @@
 #include "mbk/measure/preprocess/force_delay.h"
 #include "mbk/measure/preprocess/force_rotation.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::measurement {
 namespace {
@@ -109,6 +110,36 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
     trial->scheduling_label = {options.schedule_name.empty() ? channel.name : options.schedule_name, channel.unit};
   }
   return trial;
+}
+
+/// The recordings without EMG, whose copies would be large. EMG needs motion only: where no force was recorded, the
+/// motion takes its place and is not used.
+std::vector<Recording> motions_of(std::span<const Recording> recordings) {
+  std::vector<Recording> motions;
+  for (const Recording& recording : recordings) {
+    Recording motion = {.time = recording.time};
+    motion.time_origin = recording.time_origin;
+    motion.events = recording.events;
+    motion.metadata = recording.metadata;
+    motion.sources = recording.sources;
+    motion.notes = recording.notes;
+    motion.warnings = recording.warnings;
+    for (const Channel& channel : recording.channels) {
+      if (!explore::is_emg(channel)) motion.channels.push_back(channel);
+    }
+    const int axes = recording.find(kPositionChannels.one_axis) != nullptr     ? 1
+                     : recording.find(kPositionChannels.several[2]) != nullptr ? 3
+                                                                               : 2;
+    for (Index axis = 0; axis < axes; ++axis) {
+      const Channel* const position = recording.find(kPositionChannels.name(axes, axis));
+      if (position == nullptr || recording.find(kForceChannels.name(axes, axis)) != nullptr) continue;
+      Channel& force = motion.channels.emplace_back(*position);
+      force.name = kForceChannels.name(axes, axis);
+      force.unit.clear();
+    }
+    motions.push_back(std::move(motion));
+  }
+  return motions;
 }
 
 /// EMG after the onsets of perturbations, with the epochs of all recordings pooled.
@@ -292,8 +323,9 @@ Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings, co
 Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options) {
   const bool reaches = !recordings.empty() && are_reaches(recordings, options);
   const bool emg = options.only == ExplorationPart::emg, stretches = options.only == ExplorationPart::stretch;
-  const auto named =
-      MBK_TRY(reaches || emg || stretches ? whole_trials(recordings, options) : named_trials(recordings, options));
+  const auto named = MBK_TRY(emg                    ? whole_trials(motions_of(recordings), options)
+                             : reaches || stretches ? whole_trials(recordings, options)
+                                                    : named_trials(recordings, options));
   const std::vector<ExplorationTrial>& trials = named;
   Exploration found;
   for (const ExplorationTrial& trial : trials) {
