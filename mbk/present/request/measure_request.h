@@ -6,6 +6,7 @@
 
 #include "mbk/base/core/option_table.h"
 #include "mbk/measure/measurement/measure.h"
+#include "mbk/model/trial/exploration.h"
 #include "mbk/model/trial/recording.h"
 #include "mbk/present/request/read_request.h"
 #include "mbk/present/request/sensor_request.h"
@@ -18,6 +19,7 @@ struct MeasureRequest {
   SensorRequest sensor;
   measurement::Options options;
   std::optional<std::filesystem::path> robot;  ///< whose dynamics a computed force rests on; absent: the thesis's
+  std::optional<ExplorationPart> explored;     ///< in a study: this part of `mbk explore` instead of M, B and K
   std::string arm;                             ///< "X,Y,UPPER,FORE[,left|right]"; "": as the recording says
 };
 

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "mbk/base/core/units.h"
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/study/store/store.h"
 
 namespace mbk::store {
@@ -17,6 +20,15 @@ constexpr std::array kAxes = {"x", "y", "z"};
 class OutcomeReader {
  public:
   explicit OutcomeReader(const Json& document) : document_(document) {}
+
+  /// Of `mbk explore --only stretch` or `--only emg`.
+  std::vector<Outcome> read_exploration() {
+    const Json& directions = member(member(document_, "stretch"), "directions");
+    for (std::size_t k = 0; k < directions.size(); ++k) read_stretches(directions[k]);
+    const Json &emg = member(document_, "emg"), &channels = member(emg, "channels");
+    for (std::size_t k = 0; k < channels.size(); ++k) read_muscle(channels[k], emg);
+    return std::move(outcomes_);
+  }
 
   std::vector<Outcome> read() {
     const Json& axes = member(document_, "axes");
@@ -48,6 +60,50 @@ class OutcomeReader {
     static const Json kNothing;
     const auto found = json.is_object() ? json.find(name) : json.end();
     return json.is_object() && found != json.end() ? *found : kNothing;
+  }
+
+  /// Stretches that increase the position, and those that decrease it, are outcomes of their own.
+  void read_stretches(const Json& found) {
+    const Json& direction = member(found, "direction");
+    const char* const which = direction.is_number() && direction.get<double>() < 0.0 ? "decreasing" : "increasing";
+    const bool turns = unit_of("K") == "N·m/rad";
+    const auto add_value = [&](const char* name, const Json& value, const std::string& unit, double scale = 1.0) {
+      const Json &number = member(value, "value"), &interval = member(value, "interval95");
+      if (!number.is_number()) return;
+      Json error;
+      if (element(interval, 0).is_number() && element(interval, 1).is_number()) {
+        error = scale * (interval[1].get<double>() - interval[0].get<double>()) / (2.0 * numeric::kNormal95);
+      }
+      add(fmt::format("stretch_{}_{}", which, name), scale * number.get<double>(), error, unit);
+    };
+    const double angle = turns ? kDegrees : kMillimetres;
+    const char* const unit_of_angle = turns ? "°" : "mm";
+    add_value("slope", member(found, "slope"), unit_of("B"));
+    add_value("rise", member(found, "rise"), unit_of("B"));
+    add_value("threshold", member(found, "reflex_threshold"), unit_of_angle, angle);
+    const Json& speeds = member(found, "speeds");
+    if (!speeds.is_array() || speeds.empty()) return;
+    add_value("torque", member(speeds.back(), "mean_torque"), turns ? "N·m" : "N");
+    add_value("catch", member(speeds.back(), "catch_angle"), unit_of_angle, angle);
+    add_value("work", member(speeds.back(), "work"), "J");
+  }
+
+  /// Latency and ratios of a muscle, by direction of the perturbation.
+  void read_muscle(const Json& channel, const Json& emg) {
+    const Json &directions = member(channel, "directions"), &windows = member(emg, "windows");
+    if (!member(channel, "name").is_string()) return;
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      const std::string stem = fmt::format("{}_direction{}", channel["name"].get<std::string>(), k + 1);
+      const Json& latency = member(member(directions[k], "latency"), "value_s");
+      if (latency.is_number()) add(stem + "_latency", 1e3 * latency.get<double>(), Json(), "ms");
+      const Json& responses = member(directions[k], "windows");
+      for (std::size_t w = 0; w < responses.size(); ++w) {
+        const Json& name = member(element(windows, w), "name");
+        std::string word = name.is_string() ? name.get<std::string>() : fmt::format("window{}", w + 1);
+        std::ranges::replace(word, ' ', '_');
+        add(fmt::format("{}_{}", stem, word), member(responses[w], "ratio"), Json(), "");
+      }
+    }
   }
 
   static const Json& element(const Json& json, std::size_t at) {
@@ -161,6 +217,9 @@ std::string without_models(std::string_view document) {
 
 Result<std::vector<Outcome>> outcomes_of(std::string_view document) {
   const Json json = Json::parse(without_models(document), nullptr, false);
+  if (json.is_object() && (json.contains("stretch") || json.contains("emg"))) {
+    return OutcomeReader(json).read_exploration();
+  }
   if (!json.is_object() || !json.contains("model")) {
     return bad_data("the file is not a result of 'mbk measure --json'", "give a file of schema mbk.result/2");
   }

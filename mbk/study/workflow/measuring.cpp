@@ -14,8 +14,10 @@
 #include "mbk/base/core/version.h"
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
+#include "mbk/measure/measurement/explore.h"
 #include "mbk/present/request/named_robot.h"
 #include "mbk/present/request/open_recordings.h"
+#include "mbk/present/result/exploration_json.h"
 #include "mbk/present/result/json.h"
 
 namespace mbk::workflow {
@@ -56,6 +58,17 @@ std::string codes_of(const std::vector<Warning>& warnings) {
   return fmt::format("{}", fmt::join(codes, ", "));
 }
 
+/// The same part as `mbk explore --only` finds it.
+Result<store::UnitResult> explored_unit(const Measuring& measuring, Recording& recording, const store::Unit& unit) {
+  for (SourceFile& source : recording.sources) source.path = unit.file;
+  measurement::ExploreOptions options;
+  options.only = measuring.request.explored;
+  options.preprocess = measuring.options.preprocess;
+  const auto found = measurement::explore({&recording, 1}, options);
+  if (!found) return store::UnitResult{"", false, found.error().message};
+  return store::UnitResult{result::to_json(*found), found->usable, found->usable ? "" : codes_of(found->warnings)};
+}
+
 Result<Measurement> measured(const Measuring& measuring, Recording& recording, const store::Unit& unit) {
   for (SourceFile& source : recording.sources) source.path = unit.file;  // a result does not say where the study stands
   request::add_arm(measuring.request.arm, recording);
@@ -72,6 +85,12 @@ const OptionTable<MeasureRequest>& measuring_table() {
         if (row.facts.name != "--parts" && row.facts.name != "--trial") table.add_row(row);
       }
     }
+    table.group("Muscle tone and reflexes")
+        .add({"--explore", "stretch|emg",
+              "store the stretches or the EMG responses of each recording, as 'mbk explore --only' finds them, instead "
+              "of M, B and K",
+              one_of({"stretch", "emg"})},
+             &MeasureRequest::explored);
     return table;
   }();
   return kTable;
@@ -144,6 +163,7 @@ Result<Recording> read_stored(const Measuring& measuring, const std::filesystem:
     reading.options.arm.clear();
     reading.options.rate.reset();
   }
+  if (measuring.request.explored) reading.options.emg = recording::EmgReading::all;
   reading.files = {file};
   const auto reader = MBK_TRY(request::open_recordings(reading, measuring.request.sensor));
   const int which = part == 0 ? 0 : static_cast<int>(part) - 1;
@@ -168,6 +188,7 @@ Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::fi
     if (!recording) return store::UnitResult{"", false, recording.error().message};
   }
   if (recording->sources.size() != 1 || recording->sources.front().sha256 != unit.sha256) return damaged();
+  if (measuring.request.explored) return explored_unit(measuring, *recording, unit);
   const auto found = measured(measuring, *recording, unit);
   if (!found) return store::UnitResult{"", false, found.error().message};
   const Identification& identification = found->identification;
