@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,8 @@ struct StretchMovement {
   double from = 0, to = 0;      ///< position at its begin and end [rad]
   double speed = 0;             ///< mean |velocity| on it [rad/s]
   double mean_torque = 0;       ///< that resists, mean over the analysed angles [N·m]
+  double begin_s = 0;           ///< where it leaves rest [s]
+  double end_s = 0;             ///< where it comes to rest [s]
 };
 
 /// Stretches of one direction at one speed.
@@ -51,6 +54,29 @@ struct StretchSpeed {
   CatchFinding catch_finding = CatchFinding::cannot_be_judged;
   std::optional<StretchValue> catch_angle;  ///< if a catch was found [rad]
   std::optional<StretchValue> work;  ///< that the limb absorbs in stretch and return over the analysed angles [J]
+};
+
+/// EMG of one muscle in the stretches of one direction at one speed.
+struct StretchMuscleSpeed {
+  double speed = 0;                         ///< mean [rad/s]
+  int stretches = 0;                        ///< with a rest before them, from which the background follows
+  int onsets = 0;                           ///< of them with an onset of the EMG
+  std::optional<StretchValue> onset_angle;  ///< mean position at these onsets [rad]
+};
+
+/// EMG of one muscle in the stretches of one direction.
+struct StretchMuscle {
+  std::string name;                        ///< of the channel
+  bool usable = true;                      ///< false: its onsets were not sought
+  std::string reason;                      ///< why it is not usable
+  std::vector<StretchMuscleSpeed> speeds;  ///< as StretchDirection::speeds; empty if not usable
+  std::optional<StretchValue> threshold;   ///< onset extrapolated to speed 0: tonic stretch reflex threshold λ [rad]
+  std::optional<double> shift;             ///< change of the onset angle with speed [rad/(rad/s)]
+  std::string threshold_note;              ///< why the threshold is absent, or what it rests on
+  /// Whether the EMG rose in any stretch.
+  [[nodiscard]] bool responds() const {
+    return std::any_of(speeds.begin(), speeds.end(), [](const StretchMuscleSpeed& one) { return one.onsets > 0; });
+  }
 };
 
 /// Stretches in one direction.
@@ -69,6 +95,7 @@ struct StretchDirection {
   std::optional<double> threshold_shift;         ///< its change with speed [rad/(rad/s)]
   std::string threshold_note;                    ///< why it is absent, or what it is worth
   std::vector<StretchMovement> stretches;
+  std::vector<StretchMuscle> muscles;  ///< channels emg_* that all recordings have
 };
 
 /// Resistance of a limb to stretches at several constant velocities.

@@ -48,6 +48,29 @@ std::string verdict_text(const StretchDirection& found) {
   return "cannot be judged: " + found.verdict_reason;
 }
 
+std::string muscle_lines(const StretchDirection& found, const StretchUnits& shown) {
+  if (found.muscles.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {{"muscle", "speed", "EMG onsets", "position at the onset"}};
+  std::vector<std::vector<std::string>> thresholds;
+  for (const StretchMuscle& muscle : found.muscles) {
+    for (const StretchMuscleSpeed& one : muscle.speeds) {
+      rows.push_back({&one == muscle.speeds.data() ? muscle.name : "",
+                      fmt::format("{:.0f}{}", shown.scale * one.speed, shown.speed),
+                      fmt::format("{} of {}", one.onsets, one.stretches),
+                      one.onset_angle ? with_limits(*one.onset_angle, 1, shown.scale) + shown.position : ""});
+    }
+    std::string text = "not analysed: " + muscle.reason;
+    if (muscle.threshold) {
+      text = with_limits(*muscle.threshold, 1, shown.scale) + shown.position + "; " + muscle.threshold_note;
+    } else if (muscle.usable) {
+      text = (muscle.responds() ? "not identified: " : "no response: ") + muscle.threshold_note;
+    }
+    thresholds.push_back({muscle.name, text});
+  }
+  return "EMG in these stretches\n" + (rows.size() > 1 ? table(rows) : "") +
+         "threshold at rest (λ), from the onsets of EMG\n" + table(thresholds);
+}
+
 std::string direction_lines(const StretchDirection& found, const StretchUnits& shown) {
   std::vector<std::vector<std::string>> rows = {
       {"speed", "stretches", "mean torque, " + std::string(shown.torque), "angle of catch", "work of the loop, J"}};
@@ -71,7 +94,7 @@ std::string direction_lines(const StretchDirection& found, const StretchUnits& s
                                                                       shown.position + "; " + found.threshold_note
                                                                 : "not identified: " + found.threshold_note});
   }
-  return text + table(rows);
+  return text + table(rows) + muscle_lines(found, shown);
 }
 
 }  // namespace stretch_lines

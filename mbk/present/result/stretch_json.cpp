@@ -23,6 +23,8 @@ void describe(Fields<StretchMovement>& fields) {
   fields.add_rounded("speed", &StretchMovement::speed, kDigits, "mean on the plateau [rad/s or m/s]");
   fields.add_rounded("mean_torque", &StretchMovement::mean_torque, kDigits,
                      "that resists, mean over the analysed positions [N·m or N]");
+  fields.add_rounded("begin_s", &StretchMovement::begin_s, kTimeDigits, "where the movement leaves rest [s]");
+  fields.add_rounded("end_s", &StretchMovement::end_s, kTimeDigits, "where it comes to rest [s]");
 }
 
 void describe(Fields<StretchSpeed>& fields) {
@@ -36,6 +38,27 @@ void describe(Fields<StretchSpeed>& fields) {
   fields.add("catch_angle", &StretchSpeed::catch_angle, "where it starts to rise, if a catch was found [rad or m]");
   fields.add("work", &StretchSpeed::work,
              "absorbed by the limb in stretch and return over the analysed positions [J]; absent without returns");
+}
+
+void describe(Fields<StretchMuscleSpeed>& fields) {
+  fields.type("StretchMuscleSpeed", "EMG of one muscle in the stretches of one direction at one speed.");
+  fields.add("speed", &StretchMuscleSpeed::speed, "[rad/s or m/s]");
+  fields.add("stretches", &StretchMuscleSpeed::stretches, "with a rest before them, from which the background follows");
+  fields.add("onsets", &StretchMuscleSpeed::onsets, "of them with an onset of the EMG");
+  fields.add("onset_angle", &StretchMuscleSpeed::onset_angle,
+             "mean position at these onsets [rad or m]; absent without onsets");
+}
+
+void describe(Fields<StretchMuscle>& fields) {
+  fields.type("StretchMuscle", "EMG of one muscle in the stretches of one direction.");
+  fields.add("name", &StretchMuscle::name);
+  fields.add("usable", &StretchMuscle::usable);
+  fields.add("reason", &StretchMuscle::reason, "why it is not usable");
+  fields.add("speeds", &StretchMuscle::speeds, "increasing; empty if not usable");
+  fields.add("threshold", &StretchMuscle::threshold,
+             "position of the onset extrapolated to speed 0 [rad or m]; absent if it cannot be identified");
+  fields.add("shift", &StretchMuscle::shift, "change of the position of the onset with speed [s]");
+  fields.add("threshold_note", &StretchMuscle::threshold_note, "why the threshold is absent, or what it rests on");
 }
 
 void describe(Fields<StretchDirection>& fields) {
@@ -56,6 +79,7 @@ void describe(Fields<StretchDirection>& fields) {
   fields.add("threshold_shift", &StretchDirection::threshold_shift, "change of the catch angle with speed [s]");
   fields.add("threshold_note", &StretchDirection::threshold_note);
   fields.add("stretches", &StretchDirection::stretches);
+  fields.add("muscles", &StretchDirection::muscles, "empty without EMG");
 }
 
 void describe(Fields<StretchEstimate>& fields) {

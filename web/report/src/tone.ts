@@ -103,6 +103,23 @@ function stretchChart(one: StretchDirection, units: ReturnType<typeof unitsOf>, 
   };
 }
 
+function muscleParts({ muscles }: StretchDirection, units: ReturnType<typeof unitsOf>, k: number): (Node | string)[] {
+  if (!muscles.length) return [];
+  return [
+    table("Onsets of EMG in these stretches; brackets are 95 % intervals", ["muscle", "speed", "stretches with an onset", `position at the onset, ${units.angle}`],
+      muscles.flatMap((muscle) => muscle.speeds.map((one, at) => [
+        muscle.name, `${fixed(units.scale * known(one.speed), 0)} ${units.speed}`, `${one.onsets} of ${one.stretches}`,
+        shown(one.onset_angle, `onset-${k}-${muscle.name}-${at}`, 1, units.scale),
+      ])), "numbers"),
+    facts(muscles.map((muscle) => [
+      `Threshold at rest (λ), ${muscle.name}`,
+      !muscle.usable ? `not analysed: ${muscle.reason}`
+        : muscle.threshold ? h("span", {}, shown(muscle.threshold, `lambda-${k}-${muscle.name}`, 1, units.scale), ` ${units.angle}; ${muscle.threshold_note}`)
+          : `${muscle.speeds.some((one) => one.onsets) ? "not identified" : "no response"}: ${muscle.threshold_note}`,
+    ])),
+  ];
+}
+
 export function stretchSection(found: StretchEstimate, result: Exploration): HTMLElement {
   const units = unitsOf(result);
   const catchText = { found: "", none: "no catch", "cannot-be-judged": "not judged" };
@@ -122,6 +139,7 @@ export function stretchSection(found: StretchEstimate, result: Exploration): HTM
         ["Intervals rest on", one.interval_basis],
         ["Threshold at rest", one.reflex_threshold ? h("span", {}, shown(one.reflex_threshold, `threshold-${k}`, 1, units.scale), ` ${units.angle}; ${one.threshold_note}`) : `not identified: ${one.threshold_note}`],
       ]),
+      ...muscleParts(one, units, k),
     ]),
     h("p", {}, h("strong", {}, "What these data cannot show")),
     h("ul", {}, ...found.limits.map((limit) => h("li", {}, limit))),
