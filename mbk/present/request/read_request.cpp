@@ -16,7 +16,8 @@ const OptionTable<ReadRequest>& read_table() {
               "slice of an array of trials; x=Arm.angle a channel of a stream. x=2:mm converts a unit, Fx=-10 reverses "
               "a "
               "sign. Channels: time, x, y, Fx, Fy, xr, yr, q1 to q8, tau1 to tau8, qr1 to qr8, ax, ay, Vx, Vy; three "
-              "axes: also z, Fz, zr, az; one axis: time, x, F, xr, a; for mbk tf: input, output",
+              "axes: also z, Fz, zr, az; one axis: time, x, F, xr, a; EMG: emg_biceps and other names; for mbk tf: "
+              "input, output",
               not_empty()},
              &ReadRequest::channels)
         .group("Reading the file")

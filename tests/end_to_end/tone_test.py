@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""Muscle tone and reflexes: EMG after perturbations, and stretches at constant velocity, from scenario to study."""
+
+import math
+import os
+import pathlib
+import random
+import shutil
+import unittest
+
+from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main, run
+
+ELBOW = ("--axes", 1, "--channels", "x=angle_deg:deg,F=-torque_Nm:N.m")
+
+
+class Tone(Case):
+    scenarios = {}
+
+    def recorded(self, scenario, seed=1):
+        name = f"{scenario}_{seed}.h5"
+        if name not in self.scenarios:
+            self.scenarios[name] = self.folder.parent / name
+            self.fine("simulate", scenario, "--seed", seed, "--out", self.scenarios[name], "--quiet", "--overwrite")
+        return self.scenarios[name]
+
+    def test_muscles_respond_after_their_latency_and_only_if_stretched(self):
+        emg = self.fine("explore", self.recorded("elbow_perturbed"), "--only", "emg", "--json").json["emg"]
+        self.assertEqual([channel["name"] for channel in emg["channels"]], ["emg_biceps", "emg_triceps"])
+        for channel, stretched in zip(emg["channels"], (0, 1)):
+            one, other = channel["directions"][stretched], channel["directions"][1 - stretched]
+            low, high = one["latency"]["interval95"]
+            self.assertLess(abs(one["latency"]["value_s"] - 0.025), 0.003, channel["name"])
+            self.assertLess(low, high)
+            self.assertTrue(all(window["response"] == "increase" for window in one["windows"]))
+            self.assertIsNone(other.get("latency"))
+            self.assertTrue(all(window["response"] == "none" for window in other["windows"]))
+
+    def test_emg_needs_no_force_and_is_read_from_any_table(self):
+        random.seed(4)
+        table = self.folder / "emg.csv"
+        onsets = [1 + 1.1 * k for k in range(12)]
+        lines = ["time_s,angle_deg,EMG biceps (mV),Triceps EMG (uV)"]
+        for k in range(15 * 2000):
+            time, angle, burst = k / 2000, 0.0, 1
+            for onset in onsets:
+                since = time - onset
+                angle += 3 * min(1, max(0, since / 0.03)) - 3 * min(1, max(0, (since - 0.5) / 0.03))
+                burst = 3 if 0.04 <= since < 0.09 else burst
+            lines.append(f"{time:.4f},{90 + angle + random.gauss(0, 1e-3):.4f},{random.gauss(0, 0.02 * burst):.5f},"
+                         f"{random.gauss(0, 20):.3f}")
+        table.write_text("\n".join(lines) + "\n")
+        emg = self.fine("explore", table, "--only", "emg", "--axes", 1, "--channels", "x=angle_deg:deg", "--json").json["emg"]
+        self.assertEqual(emg["onset_rule"], "motion")
+        biceps, triceps = emg["channels"]
+        self.assertLess(abs(biceps["directions"][0]["latency"]["value_s"] - 0.04), 0.003)
+        for channel in emg["channels"]:
+            self.assertLess(abs(channel["background"] / (0.8 * 20e-6) - 1), 0.1)  # E|x| = 0.8 σ
+        self.assertIsNone(triceps["directions"][0].get("latency"))
+        info = self.fine("info", table, "--axes", 1, "--channels", "x=angle_deg:deg")
+        self.assertIn("emg_biceps", info.out)
+        measured = run("identify", self.recorded("elbow_perturbed"))
+        self.assertIn("EMG was found but not read: emg_biceps, emg_triceps", " ".join(measured.out.split()), measured)
+
+    def test_recordings_without_emg_or_onsets_are_refused(self):
+        still = self.folder / "still.csv"
+        still.write_text("time,position_rad,emg_1_mV\n" + "".join(
+            f"{k / 1000},{1e-4 * math.sin(k / 300)},{math.sin(k * k)}\n" for k in range(4000)))
+        self.refused(BAD_DATA, "explore", still, "--only", "emg")
+        self.fine("simulate", "ankle_reflex", "--out", self.folder / "ankle.h5", "--quiet")
+        self.refused(BAD_DATA, "explore", self.folder / "ankle.h5", "--only", "emg")
+        self.refused(WRONG_USAGE, "explore", still, "--only", "emg", "--emg-band", "450,20")
+        self.refused(WRONG_USAGE, "explore", still, "--only", "emg", "--emg-band", "20")
+        self.refused(WRONG_USAGE, "explore", still, "--only", "emg", "--mvc", "biceps")
+
+    def test_a_healthy_elbow_is_not_velocity_dependent(self):
+        found = self.fine("explore", self.recorded("elbow_healthy"), "--protocol", "stretch", "--json").json["stretch"]
+        self.assertNotEqual(found["directions"][0]["verdict"], "velocity-dependent")
+        self.assertTrue(all(speed["catch"] != "found" for speed in found["directions"][0]["speeds"]))
+        low, high = found["directions"][0]["slope"]["interval95"]
+        self.assertTrue(low < 0.1 < high)  # N·m·s/rad, the viscosity of the scenario
+
+    @unittest.skipUnless(os.environ.get("MBK_DATA_DIR"), "MBK_DATA_DIR is not set")
+    def test_a_real_healthy_elbow_is_not_called_spastic(self):
+        folder = pathlib.Path(os.environ["MBK_DATA_DIR"]) / "elbow"
+        files = [folder / f"v{speed}.csv" for speed in range(10, 100, 10)]
+        found = self.fine("explore", *files, *ELBOW, "--only", "stretch", "--json").json["stretch"]["directions"][0]
+        self.assertEqual(found["verdict"], "not-shown")
+        self.assertEqual(len(found["speeds"]), 9)
+        self.assertTrue(all(speed["catch"] == "cannot-be-judged" for speed in found["speeds"][1:]))
+        ran = run("explore", *files, "--axes", 1, "--channels", "x=angle_deg:deg,F=torque_Nm:N.m", "--only", "stretch")
+        self.assertEqual(ran.code, NOT_USABLE, ran)
+        self.assertIn("force-sign-reversed", ran.out)
+
+    def test_a_report_shows_both(self):
+        for scenario, part, words in (("elbow_perturbed", "emg", "EMG after perturbations"),
+                                      ("elbow_spastic", "stretch", "Stretches at constant velocity")):
+            page = self.folder / f"{part}.html"
+            self.fine("explore", self.recorded(scenario), "--only", part, "--report", page, "--quiet")
+            self.assertIn(words, page.read_text(encoding="utf-8"))
+
+    def test_a_study_holds_stretches_as_outcomes(self):
+        study = self.folder / "study"
+        self.fine("study", "init", study)
+        for person in (1, 2):
+            for session in (1, 2):
+                self.fine("study", "add", self.recorded("elbow_healthy", 10 * person + session), "--study", study,
+                          "--participant", person, "--session", session, "--condition", "rest")
+        self.fine("study", "measure", "--study", study, "--explore", "stretch", "--quiet")
+        self.fine("study", "defaults", "--study", study, "--explore", "stretch")
+        summary = self.fine("study", "summary", "--study", study, "--json").json
+        outcomes = {row["outcome"]: row for row in summary["outcomes"]}
+        self.assertIn("stretch_increasing_slope", outcomes)
+        self.assertLess(abs(outcomes["stretch_increasing_slope"]["mean"] - 0.1), 0.03)
+
+
+if __name__ == "__main__":
+    main()
