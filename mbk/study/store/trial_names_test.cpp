@@ -144,6 +144,28 @@ TEST(Outcomes, AreTheNumbersOfAResult) {
   EXPECT_FALSE(outcomes_of("{\"model\":"));
 }
 
+TEST(Outcomes, OfStretchesAndEmgAreThoseOfAnExploration) {
+  const auto by_name = [](std::string_view document) {
+    std::map<std::string, Outcome> all;
+    for (const Outcome& one : outcomes_of(document).value()) all[one.name] = one;
+    return all;
+  };
+  const auto stretch = by_name(R"({"units":{"K":"N·m/rad","B":"N·m·s/rad"},"stretch":{"directions":[
+      {"direction":1,"slope":{"value":0.1,"interval95":[0.08,0.12]},
+       "speeds":[{"mean_torque":{"value":0.4}},{"mean_torque":{"value":0.8},"catch_angle":{"value":2}}]}]}})");
+  EXPECT_EQ(stretch.at("stretch_increasing_slope").value, 0.1);
+  EXPECT_NEAR(*stretch.at("stretch_increasing_slope").standard_error, 0.02 / 1.96, 1e-5);
+  EXPECT_EQ(stretch.at("stretch_increasing_slope").unit, "N·m·s/rad");
+  EXPECT_EQ(stretch.at("stretch_increasing_torque").value, 0.8) << "of the fastest";
+  EXPECT_NEAR(stretch.at("stretch_increasing_catch").value, 114.592, 1e-3);
+  EXPECT_EQ(stretch.count("stretch_increasing_work"), 0U);
+  const auto emg = by_name(R"({"emg":{"windows":[{"name":"short latency"}],"channels":[{"name":"emg_biceps",
+      "directions":[{"latency":{"value_s":0.025},"windows":[{"ratio":1.5}]},{"latency":null,"windows":[{"ratio":1.0}]}]}]}})");
+  EXPECT_EQ(emg.at("emg_biceps_direction1_latency").value, 25.0);
+  EXPECT_EQ(emg.at("emg_biceps_direction1_short_latency").value, 1.5);
+  EXPECT_EQ(emg.count("emg_biceps_direction2_latency"), 0U);
+}
+
 TEST(Outcomes, OfThreeAxesHaveNineElementsAndTheEllipsoid) {
   const auto outcomes = outcomes_of(
                             R"({"axes":3,"units":{"K":"N/m","M":"kg","x0":"m"},
