@@ -54,7 +54,7 @@ class Tone(Case):
         biceps, triceps = emg["channels"]
         self.assertLess(abs(biceps["directions"][0]["latency"]["value_s"] - 0.04), 0.003)
         for channel in emg["channels"]:
-            self.assertLess(abs(channel["background"] / (0.8 * 20e-6) - 1), 0.1)  # E|x| = 0.8 σ
+            self.assertLess(abs(channel["background"] / (0.8 * 20e-6 * math.sqrt(0.43)) - 1), 0.1)  # E|x| = 0.8 σ; 430 of 1000 Hz
         self.assertIsNone(triceps["directions"][0].get("latency"))
         info = self.fine("info", table, "--axes", 1, "--channels", "x=angle_deg:deg")
         self.assertIn("emg_biceps", info.out)

@@ -17,10 +17,10 @@
 namespace mbk::explore {
 namespace {
 
-constexpr double kLeastEmgRate = 300.0;  ///< [Hz]
-constexpr double kBelowNyquist = 0.9;    ///< where the band ends, of the Nyquist frequency
-constexpr std::size_t kFewLevels = 32;   ///< 5 bits
-constexpr Index kClippedRun = 3;         ///< [samples]
+constexpr double kMinEmgRate = 300.0;   ///< [Hz]
+constexpr double kBelowNyquist = 0.9;   ///< where the band ends, of the Nyquist frequency
+constexpr std::size_t kFewLevels = 32;  ///< 5 bits
+constexpr Index kClippedRun = 3;        ///< [samples]
 constexpr Index kClippedRuns = 2;
 constexpr double kHumShare = 0.05;      ///< of the power in the band
 constexpr double kSlowEdge = 1.0;       ///< [Hz] below it is offset and drift
@@ -110,8 +110,8 @@ Result<EmgProcessing> emg_processing_at(Hertz rate, const EmgProcessing& wanted)
   if ((wanted.envelope_hz > 0.0) == (wanted.envelope_rms_s > 0.0)) {
     return bad_usage("the EMG envelope needs a low-pass or an RMS window, and not both");
   }
-  if (!(rate.value >= kLeastEmgRate)) {
-    return bad_data(fmt::format("EMG at {:g} Hz: at least {:g} Hz are needed", rate.value, kLeastEmgRate),
+  if (!(rate.value >= kMinEmgRate)) {
+    return bad_data(fmt::format("EMG at {:g} Hz: at least {:g} Hz are needed", rate.value, kMinEmgRate),
                     "record EMG at 1000 Hz or more, or open the file at the rate of its EMG");
   }
   EmgProcessing how = wanted;

@@ -24,11 +24,11 @@ constexpr double kStepWithin = 0.15;  ///< [s] after an onset, where its largest
 constexpr double kLag = 0.01;         ///< [s] over which a displacement says that it moves
 constexpr double kMoves = 0.2;        ///< of the largest such displacement
 constexpr double kNoiseDeviations = 6.0;
-constexpr double kLeastThreshold = 0.002;  ///< of the displacement
+constexpr double kMinThreshold = 0.002;  ///< of the displacement
 constexpr Index kMinEmgTrials = 3;
 constexpr int kReplicates = 1000;
 constexpr double kTail = 0.025;            ///< of the bootstrap at each end of an interval
-constexpr double kLeastDeviation = 1e-3;   ///< of a replicate, of that of the trials: all its trials may be one
+constexpr double kMinDeviation = 1e-3;     ///< of a replicate, of that of the trials: all its trials may be one
 constexpr double kFamilyLevel = 0.03;      ///< of all windows of a direction together: 1 % in each of three
 constexpr double kAfterWindow = 0.01;      ///< [s] data after the window that the change points are fitted to
 constexpr double kShortestLevel = 0.005;   ///< [s]
@@ -100,7 +100,7 @@ EmgWindowResponse window_response(const Vector& window, const Vector& background
   Vector t(weights.rows());
   for (Index k = 0; k < t.size(); ++k) {
     t[k] = std::log(ws[k] / bs[k] / found.ratio) /
-           std::max(deviation(ww[k], wb[k], bb[k], ws[k], bs[k]), kLeastDeviation * own);
+           std::max(deviation(ww[k], wb[k], bb[k], ws[k], bs[k]), kMinDeviation * own);
   }
   const Interval ends = percentiles(std::move(t), kTail);
   found.interval95 = {found.ratio * std::exp(-ends.second * own), found.ratio * std::exp(-ends.first * own)};
@@ -360,7 +360,7 @@ std::vector<Onset> motion_onsets(const Matrix& position, double sample_time, Ind
     const Vector along =
         (position.middleRows(i - rest, std::min(rest + 2 * lag, rows - i + rest)).rowwise() - mean.transpose()) *
         (step / size);
-    const double threshold = std::max(kNoiseDeviations * noise, kLeastThreshold * size);
+    const double threshold = std::max(kNoiseDeviations * noise, kMinThreshold * size);
     const Index peak = std::min(rest + lag, along.size() - 2);
     if (along[peak] <= 4.0 * threshold) continue;  // not distinguishable from the noise of the rest
     const double first = crossing(along, peak, threshold), fourth = crossing(along, peak, 4.0 * threshold);

@@ -240,7 +240,9 @@ const OptionTable<ExploreRequest>& explore_table() {
             force_delay_option(), [](auto& request) -> auto& { return request.options.force_delay; }, kMilliseconds)
         .add_row(force_rotation_row<ExploreRequest>(kWindowGroup))
         .add(
-            {"--only", "", "compute only this part (default: all but emg and stretch)"},
+            {"--only", "PART",
+             "compute only this part: frequency-response, impulse-response, reflex, time-course, ramp-and-hold, "
+             "servo-displacement, emg or stretch (default: all but emg and stretch)"},
             [](auto& request) -> auto& { return request.options.only; })
         .include(
             response_table(), [](auto& request) -> auto& { return request.options.frequency_response; })

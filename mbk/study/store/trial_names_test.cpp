@@ -147,7 +147,8 @@ TEST(Outcomes, AreTheNumbersOfAResult) {
 TEST(Outcomes, OfStretchesAndEmgAreThoseOfAnExploration) {
   const auto by_name = [](std::string_view document) {
     std::map<std::string, Outcome> all;
-    for (const Outcome& one : outcomes_of(document).value()) all[one.name] = one;
+    const auto outcomes = outcomes_of(document);
+    for (const Outcome& one : outcomes.value()) all[one.name] = one;
     return all;
   };
   const auto stretch = by_name(R"({"units":{"K":"N·m/rad","B":"N·m·s/rad"},"stretch":{"directions":[
