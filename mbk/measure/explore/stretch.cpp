@@ -28,6 +28,7 @@ constexpr double kMinRatio = 2.0;      ///< of the largest to the smallest speed
 constexpr double kMinRange = 0.1;      ///< of the smallest travel, that all stretches have in common
 constexpr Index kSamplesPerBin = 3, kMaxBins = 45;
 constexpr double kOneSided = 0.975, kFamily = 0.05;
+constexpr double kAtRest = 0.05;    ///< speed at rest relative to that of the movement
 constexpr double kOtherAxis = 0.1;  ///< motion of another axis relative to that of the stretched one
 
 struct Signal {
@@ -523,6 +524,20 @@ std::map<Index, std::vector<double>> loops(const Side& side, const std::vector<M
   return work;
 }
 
+/// First sample of a movement, up to its plateau, from which on it is never slower than a share of its speed.
+Index left_rest(const Signal& signal, const Move& move) {
+  Index i = move.from;
+  while (i > move.begin && move.direction * signal.velocity[i - 1] > kAtRest * move.speed) --i;
+  return i;
+}
+
+/// Likewise the last one.
+Index came_to_rest(const Signal& signal, const Move& move) {
+  Index i = move.to - 1;
+  while (i + 1 < move.end && move.direction * signal.velocity[i + 1] > kAtRest * move.speed) ++i;
+  return i;
+}
+
 StretchDirection described(const Side& side, const std::vector<Move>& moves, const std::vector<Signal>& signals,
                            const StretchOptions& options, bool sign_reversed) {
   StretchDirection found;
@@ -560,7 +575,7 @@ StretchDirection described(const Side& side, const std::vector<Move>& moves, con
     const auto time = [&](Index sample) { return signal.first_s + static_cast<double>(sample) * signal.sample_time; };
     found.stretches.push_back({one.move.recording, time(one.move.from), time(one.move.to),
                                signal.position[one.move.from], signal.position[one.move.to - 1], one.move.speed,
-                               one.mean});
+                               one.mean, time(left_rest(signal, one.move)), time(came_to_rest(signal, one.move))});
   }
   std::ranges::sort(found.stretches, {},
                     [](const StretchMovement& one) { return std::pair(one.recording, one.from_s); });

@@ -17,6 +17,7 @@
 #include "mbk/measure/explore/after_onset.h"
 #include "mbk/measure/explore/limb_signals.h"
 #include "mbk/measure/explore/parallel_cascade.h"
+#include "mbk/measure/explore/stretch_muscles.h"
 #include "mbk/measure/explore/time_course.h"
 #include "mbk/measure/measurement/course_variable.h"
 #include "mbk/measure/preprocess/exclusions.h"
@@ -173,6 +174,23 @@ Result<void> add_emg(std::span<const Recording> recordings, std::span<const Expl
   found.usable = std::ranges::any_of(emg->channels, &EmgChannelEstimate::usable);
   found.emg = std::move(*emg);
   return {};
+}
+
+/// EMG of the stretches, on the clock of the trials.
+/// @fails  as reclocked and explore::add_stretch_muscles
+Result<void> add_emg_of_stretches(std::span<const Recording> recordings, std::span<const ExplorationTrial> trials,
+                                  const ExploreOptions& options, StretchEstimate& found) {
+  if (options.signals) return {};
+  std::vector<preprocess::Reclocked> even;
+  even.reserve(recordings.size());  // the sources below point into it
+  std::vector<const Recording*> sources;
+  for (const Recording& recording : recordings) {
+    auto one = preprocess::reclocked(recording, recording::inspect(recording), options.resample);
+    if (!one) return tl::unexpected(one.error());
+    even.push_back(std::move(*one));
+    sources.push_back(even.back().recording ? &*even.back().recording : &recording);
+  }
+  return explore::add_stretch_muscles(sources, trials, found);
 }
 
 bool requested(const ExploreOptions& options, ExplorationPart part) {
@@ -348,6 +366,7 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
   if (stretches) {
     auto stretch = explore::stretch(trials, options.stretch, found.warnings);
     if (!stretch) return tl::unexpected(stretch.error().in("stretches"));
+    MBK_TRY(add_emg_of_stretches(recordings, trials, options, *stretch));
     found.usable = stretch->usable;
     found.stretch = std::move(*stretch);
     return found;

@@ -278,7 +278,8 @@ Result<measurement::ExploreOptions> explore_options(ExploreRequest& request) {
   options.reaches.from_s = options.plateau.from_s;
   options.reaches.to_s = options.plateau.to_s;
   MBK_TRY(set_emg(request, options.emg));
-  if (options.only == ExplorationPart::emg) request.reading.options.emg = recording::EmgReading::all;
+  const bool emg = options.only == ExplorationPart::emg || options.only == ExplorationPart::stretch;
+  if (emg) request.reading.options.emg = recording::EmgReading::all;
   MBK_TRY(name_signals(request, options));
   if (options.schedule == "schedule") options.schedule_name = shown_name(request.schedule);
   return options;
