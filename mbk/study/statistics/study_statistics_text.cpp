@@ -277,11 +277,11 @@ std::string raters_table(const std::vector<OutcomeReliability>& all) {
     if (!one.raters) continue;
     if (condition == nullptr || *condition != one.condition) {
       condition = &one.condition;
-      text += fmt::format("\nreliability of one rater, {}\n  {:<23}  {:>5}  {:>5}  {:>13}  {:>7}  {:>7}  {}\n",
+      text += fmt::format("\nreliability of one rater, {}\n  {:<22}  {:>5}  {:>5}  {:>12}  {:>7}  {:>7}  {}\n",
                           condition_title(*condition), "outcome", "n×r", "Φ", "95 %", "SEM", "MDC", "unit");
     }
     const reliability::RaterModel& model = one.raters->model;
-    const std::string name = fmt::format("  {:<23}", one.outcome);
+    const std::string name = fmt::format("  {:<22}", one.outcome);
     if (model.support != Support::enough) {
       const bool few_raters = model.support == Support::too_few_raters;
       text += item(name + "  ",
@@ -289,7 +289,7 @@ std::string raters_table(const std::vector<OutcomeReliability>& all) {
       continue;
     }
     const reliability::Generalizability& found = one.raters->of_numbers.front();
-    text += name + fmt::format("  {:>5}  {:>5} {:>14}  {:>7}  {:>7}  {}\n",
+    text += name + fmt::format("  {:>5}  {:>5} {:>13}  {:>7}  {:>7}  {}\n",
                                fmt::format("{}×{}", model.participants, model.raters), share(found.absolute),
                                shares(found.absolute95), digits(found.absolute_error.sem),
                                digits(found.absolute_error.mdc95), one.unit);
