@@ -10,10 +10,11 @@
 namespace mbk::validation {
 namespace simulated_stretch {
 
-constexpr double kRest = 0.2;  ///< before and after each movement [s]
 constexpr double kDriftHz = 1.5;
 constexpr int kQuantiles = 9;
-constexpr std::uint32_t kLimb = 71, kSpread = 72, kDrift = 73, kSensor = 74, kEncoder = 75;
+constexpr std::uint32_t kLimb = 71, kSpread = 72, kDrift = 73, kSensor = 74, kEncoder = 75, kEmg = 76;
+constexpr double kEmgLargest = 1e-3, kEmgBackground = 5e-6;  ///< [V]
+constexpr double kLargestTorque = 60.0;                      ///< [N·m]
 
 struct Sampled {
   std::vector<double> position, velocity, acceleration;
@@ -25,9 +26,9 @@ void move(Sampled& motion, double from, double to, double speed, const StretchPr
           double gain, double level) {
   const double way = std::abs(to - from), sign = to > from ? 1.0 : -1.0, a = protocol.acceleration;
   const double ramp = speed / a, duration = way / speed + ramp;
-  const auto samples = static_cast<int>(std::lround((kRest + duration) * protocol.rate));
+  const auto samples = static_cast<int>(std::lround((protocol.rest + duration) * protocol.rate));
   for (int i = 0; i < samples; ++i) {
-    const double t = static_cast<double>(i) / protocol.rate - kRest;
+    const double t = static_cast<double>(i) / protocol.rate - protocol.rest;
     double x = 0.0, v = 0.0, acceleration = 0.0;
     if (t >= 0.0 && t < ramp) {
       x = 0.5 * a * t * t, v = a * t, acceleration = a;
@@ -46,6 +47,20 @@ void move(Sampled& motion, double from, double to, double speed, const StretchPr
   }
 }
 
+/// Torque of the reflex before the muscle.
+std::vector<double> reflex_drive(const StretchedLimb& limb, const StretchProtocol& protocol, const Sampled& motion) {
+  const auto late = static_cast<std::size_t>(std::lround(limb.delay * protocol.rate));
+  std::vector<double> drive(motion.position.size(), 0.0);
+  for (std::size_t k = late; k < drive.size(); ++k) {
+    const std::size_t then = k - late;
+    const double v = motion.velocity[then];
+    if (v <= 0.0) continue;
+    const double beyond = motion.position[then] - motion.threshold[then] + limb.threshold_shift * v;
+    drive[k] = motion.gain[then] * std::max(beyond, 0.0);
+  }
+  return drive;
+}
+
 ExplorationTrial recorded(const StretchedLimb& limb, const StretchProtocol& protocol, const Sampled& motion) {
   const auto n = static_cast<Index>(motion.position.size());
   ExplorationTrial trial;
@@ -56,14 +71,12 @@ ExplorationTrial recorded(const StretchedLimb& limb, const StretchProtocol& prot
   trial.output.resize(n, 1);
   trial.split = n;
   const double lag = std::exp(-trial.sample_time / limb.muscle);
-  const auto late = static_cast<Index>(std::lround(limb.delay * protocol.rate));
-  std::vector<double> drive(motion.position.size(), 0.0);
+  const std::vector<double> drive = reflex_drive(limb, protocol, motion);
   double first = 0.0, second = 0.0;
   for (Index i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double x = motion.position[k], v = motion.velocity[k];
-    if (v > 0.0) drive[k] = motion.gain[k] * std::max(x - motion.threshold[k] + limb.threshold_shift * v, 0.0);
-    first = lag * first + (1.0 - lag) * (i >= late ? drive[static_cast<std::size_t>(i - late)] : 0.0);
+    first = lag * first + (1.0 - lag) * drive[k];
     second = lag * second + (1.0 - lag) * first;
     const double along = (x - protocol.from) / (protocol.to - protocol.from);
     trial.input(i, 0) = x;
@@ -87,6 +100,36 @@ StretchedLimb limb_of(std::uint64_t seed) {
   return limb;
 }
 
+/// Movements of a limb that varies between stretches.
+Sampled varied_motion(const StretchedLimb& limb, const StretchProtocol& protocol, const StretchNoise& noise,
+                      std::uint64_t seed) {
+  numeric::Random spread(seed, kSpread);
+  Sampled motion;
+  for (int repetition = 0; repetition < protocol.repetitions; ++repetition) {
+    for (const double speed : protocol.speeds) {
+      const double threshold = limb.threshold + noise.threshold * spread.normal();
+      const double gain = limb.gain * std::exp(noise.gain * spread.normal()), level = noise.level * spread.normal();
+      move(motion, protocol.from, protocol.to, speed, protocol, threshold, gain, level);
+      move(motion, protocol.to, protocol.from, speed, protocol, threshold, gain, level);
+    }
+  }
+  return motion;
+}
+
+ExplorationTrial measured(const StretchedLimb& limb, const StretchProtocol& protocol, const StretchNoise& noise,
+                          const Sampled& motion, std::uint64_t seed) {
+  numeric::Random drift(seed, kDrift), sensor(seed, kSensor), encoder(seed, kEncoder);
+  ExplorationTrial trial = recorded(limb, protocol, motion);
+  const double keep = std::exp(-2.0 * std::numbers::pi * kDriftHz * trial.sample_time);
+  double slow = noise.drift * drift.normal();
+  for (Index i = 0; i < trial.samples(); ++i) {
+    trial.output(i, 0) += slow + noise.sensor * sensor.normal();
+    trial.input(i, 0) += noise.angle * encoder.normal();
+    slow = keep * slow + noise.drift * std::sqrt(1.0 - keep * keep) * drift.normal();
+  }
+  return trial;
+}
+
 }  // namespace simulated_stretch
 
 StretchedLimb healthy_limb(std::uint64_t seed) {
@@ -102,25 +145,27 @@ StretchedLimb spastic_limb(std::uint64_t seed) {
 ExplorationTrial stretched(const StretchedLimb& limb, const StretchProtocol& protocol, const StretchNoise& noise,
                            std::uint64_t seed) {
   using namespace simulated_stretch;
-  numeric::Random spread(seed, kSpread), drift(seed, kDrift), sensor(seed, kSensor), encoder(seed, kEncoder);
-  Sampled motion;
-  for (int repetition = 0; repetition < protocol.repetitions; ++repetition) {
-    for (const double speed : protocol.speeds) {
-      const double threshold = limb.threshold + noise.threshold * spread.normal();
-      const double gain = limb.gain * std::exp(noise.gain * spread.normal()), level = noise.level * spread.normal();
-      move(motion, protocol.from, protocol.to, speed, protocol, threshold, gain, level);
-      move(motion, protocol.to, protocol.from, speed, protocol, threshold, gain, level);
-    }
+  return measured(limb, protocol, noise, varied_motion(limb, protocol, noise, seed), seed);
+}
+
+StretchesWithEmg stretched_with_emg(const StretchedLimb& limb, const StretchProtocol& protocol,
+                                    const StretchNoise& noise, std::uint64_t seed) {
+  using namespace simulated_stretch;
+  const Sampled motion = varied_motion(limb, protocol, noise, seed);
+  StretchesWithEmg all{measured(limb, protocol, noise, motion, seed), {}};
+  const std::vector<double> drive = reflex_drive(limb, protocol, motion);
+  numeric::Random random(seed, kEmg);
+  const Index n = all.trial.samples();
+  Vector biceps(n), triceps(n);
+  all.recording.time.resize(n);
+  for (Index i = 0; i < n; ++i) {
+    const double activation = drive[static_cast<std::size_t>(i)] / kLargestTorque;
+    biceps[i] = (kEmgBackground + kEmgLargest * activation) * random.normal();
+    triceps[i] = kEmgBackground * random.normal();
+    all.recording.time[i] = static_cast<double>(i) / protocol.rate;
   }
-  ExplorationTrial trial = recorded(limb, protocol, motion);
-  const double keep = std::exp(-2.0 * std::numbers::pi * kDriftHz * trial.sample_time);
-  double slow = noise.drift * drift.normal();
-  for (Index i = 0; i < trial.samples(); ++i) {
-    trial.output(i, 0) += slow + noise.sensor * sensor.normal();
-    trial.input(i, 0) += noise.angle * encoder.normal();
-    slow = keep * slow + noise.drift * std::sqrt(1.0 - keep * keep) * drift.normal();
-  }
-  return trial;
+  all.recording.channels = {Channel{"emg_biceps", "V", "", biceps}, Channel{"emg_triceps", "V", "", triceps}};
+  return all;
 }
 
 ExplorationTrial stretched_on_average(const StretchedLimb& limb, StretchProtocol protocol, const StretchNoise& noise) {

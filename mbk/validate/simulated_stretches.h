@@ -5,6 +5,7 @@
 
 #include "mbk/base/core/units.h"
 #include "mbk/model/trial/exploration_trial.h"
+#include "mbk/model/trial/recording.h"
 
 namespace mbk::validation {
 
@@ -29,6 +30,7 @@ struct StretchProtocol {
   double from = 60.0 * kDegree, to = 150.0 * kDegree;  ///< [rad]
   double acceleration = 20.0;                          ///< [rad/s²]
   double rate = 500.0;                                 ///< [Hz]
+  double rest = 0.2;                                   ///< before each movement [s]
 };
 
 /// Spread of the limb and noise of the machine.
@@ -49,8 +51,17 @@ struct StretchNoise {
 [[nodiscard]] ExplorationTrial stretched(const StretchedLimb& limb, const StretchProtocol& protocol,
                                          const StretchNoise& noise, std::uint64_t seed);
 
-/// The same without noise, with thresholds at equally likely quantiles of their spread instead of repetitions, and
-/// with the mean gain: what repetitions without number would show on average.
+/// Its motion and EMG, raw, of modulated noise: emg_biceps, whose amplitude is a background of 5 µV and 1 mV by the
+/// activation, which is the drive of the reflex over 60 N·m, late by `delay`; and emg_triceps, relaxed, the background.
+struct StretchesWithEmg {
+  ExplorationTrial trial;
+  Recording recording;
+};
+[[nodiscard]] StretchesWithEmg stretched_with_emg(const StretchedLimb& limb, const StretchProtocol& protocol,
+                                                  const StretchNoise& noise, std::uint64_t seed);
+
+/// The same as stretched() without noise, with thresholds at equally likely quantiles of their spread instead of
+/// repetitions, and with the mean gain: what repetitions without number would show on average.
 [[nodiscard]] ExplorationTrial stretched_on_average(const StretchedLimb& limb, StretchProtocol protocol,
                                                     const StretchNoise& noise);
 

@@ -1,10 +1,12 @@
 #include "mbk/measure/explore/stretch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "mbk/measure/explore/stretch_muscles.h"
 #include "mbk/validate/rows.h"
 #include "mbk/validate/seeded_runs.h"
 #include "mbk/validate/simulated_stretches.h"
@@ -23,6 +25,8 @@ struct StretchRun {
   std::vector<double> catch_after_onset;      ///< after the angle at which the reflex torque begins [deg]
   bool threshold_found = false;
   double threshold_error = 0;  ///< [deg]
+  bool relaxed_responds = false, emg_threshold_found = false, emg_threshold_held = false;
+  double emg_threshold_error = 0;  ///< [deg]
 };
 
 Result<StretchDirection> forward(const ExplorationTrial& trial) {
@@ -37,6 +41,23 @@ bool holds(const StretchValue& value, double truth) {
 
 bool called_dependent(const StretchDirection& found) {
   return found.verdict == VelocityDependence::velocity_dependent;
+}
+
+/// The same limb, with EMG at 1000 Hz and 0.6 s of rest.
+Result<void> add_emg_run(const StretchedLimb& limb, const StretchNoise& noise, std::uint64_t seed, StretchRun& run) {
+  const StretchesWithEmg all = stretched_with_emg(limb, {.rate = 1000.0, .rest = 0.6}, noise, seed);
+  std::vector<Warning> warnings;
+  auto found = MBK_TRY(explore::stretch({&all.trial, 1}, {}, warnings));
+  const Recording* const recording = &all.recording;
+  MBK_TRY(explore::add_stretch_muscles({&recording, 1}, {&all.trial, 1}, found));
+  run.relaxed_responds =
+      std::ranges::any_of(found.directions, [](const StretchDirection& one) { return one.muscles.back().responds(); });
+  const StretchMuscle& biceps = found.directions.front().muscles.front();
+  run.emg_threshold_found = biceps.threshold.has_value();
+  if (!biceps.threshold) return {};
+  run.emg_threshold_held = holds(*biceps.threshold, limb.threshold);
+  run.emg_threshold_error = (biceps.threshold->value - limb.threshold) * kDegrees;
+  return {};
 }
 
 Result<StretchRun> stretch_run(std::uint64_t seed) {
@@ -72,6 +93,7 @@ Result<StretchRun> stretch_run(std::uint64_t seed) {
     run.threshold_found = true;
     run.threshold_error = (found.reflex_threshold->value - spastic.threshold) * kDegrees;
   }
+  MBK_TRY(add_emg_run(spastic, noise, seed, run));
   return run;
 }
 
@@ -120,6 +142,22 @@ Result<ValidationTable> stretch_study(const StudyOptions& options) {
   if (threshold.size() > 1) {
     table.rows.push_back(
         mean_row("threshold at rest less that of the reflex", as_vector(threshold), std::nullopt, "deg"));
+  }
+  share("relaxed muscle: an onset of EMG in any stretch, either direction", &StretchRun::relaxed_responds,
+        Range{0.0, 5.0});
+  share("spastic: threshold at rest from EMG identified", &StretchRun::emg_threshold_found, std::nullopt);
+  std::vector<bool> emg_held;
+  std::vector<double> emg_error;
+  for (const StretchRun& run : ran) {
+    if (!run.emg_threshold_found) continue;
+    emg_held.push_back(run.emg_threshold_held);
+    emg_error.push_back(run.emg_threshold_error);
+  }
+  table.rows.push_back(
+      share_row("spastic: 95 % interval holds the threshold at rest from EMG", emg_held, is, kNominal));
+  if (emg_error.size() > 1) {
+    table.rows.push_back(
+        mean_row("threshold at rest from EMG less that of the reflex", as_vector(emg_error), Range{-3.0, 3.0}, "deg"));
   }
   table.notes = {
       "The angle of catch is that of the best-fitting curve that is flat, rises and is flat again, applied to "
