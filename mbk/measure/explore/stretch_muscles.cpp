@@ -354,6 +354,21 @@ Result<std::vector<StretchMuscle>> muscle_of(const std::string& name, std::span<
   return muscles;
 }
 
+/// Torque does not show a reflex over the whole range; EMG does.
+void say_what_torque_misses(StretchDirection& direction) {
+  if (direction.verdict == VelocityDependence::velocity_dependent) return;
+  for (const StretchMuscle& muscle : direction.muscles) {
+    int stretches = 0, onsets = 0;
+    for (const StretchMuscleSpeed& one : muscle.speeds) {
+      stretches += one.stretches;
+      onsets += one.onsets;
+    }
+    if (2 * onsets <= stretches) continue;
+    direction.verdict_reason +=
+        fmt::format("; but {} responds in {} of {} stretches: a stretch reflex", muscle.name, onsets, stretches);
+  }
+}
+
 }  // namespace stretch_muscles
 
 Result<void> add_stretch_muscles(std::span<const Recording* const> recordings, std::span<const ExplorationTrial> trials,
@@ -379,6 +394,7 @@ Result<void> add_stretch_muscles(std::span<const Recording* const> recordings, s
   for (const auto& one : muscles) {
     for (std::size_t d = 0; d < found.directions.size(); ++d) found.directions[d].muscles.push_back(one[d]);
   }
+  for (StretchDirection& direction : found.directions) say_what_torque_misses(direction);
   return {};
 }
 

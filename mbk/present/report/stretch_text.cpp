@@ -84,7 +84,7 @@ std::string direction_lines(const StretchDirection& found, const StretchUnits& s
                                  found.direction > 0 ? "increasing" : "decreasing", shown.scale * found.range.first,
                                  shown.scale * found.range.second, shown.position) +
                      table(rows);
-  rows = {{"verdict", verdict_text(found)}};
+  rows = {{"torque", verdict_text(found)}};
   if (found.speeds.size() > 1) {
     rows.push_back({"slope over speed", with_limits(found.slope, 3) + " " + shown.slope});
     rows.push_back({"rise in the stretch",
