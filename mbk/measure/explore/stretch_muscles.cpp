@@ -364,8 +364,8 @@ void say_what_torque_misses(StretchDirection& direction) {
       onsets += one.onsets;
     }
     if (2 * onsets <= stretches) continue;
-    direction.verdict_reason +=
-        fmt::format("; but {} responds in {} of {} stretches: a stretch reflex", muscle.name, onsets, stretches);
+    direction.verdict_reason += fmt::format("; but {} responds in {} of {} stretches: a reflex or a voluntary response",
+                                            muscle.name, onsets, stretches);
   }
 }
 

@@ -153,6 +153,6 @@ export function toneSentences(result: Exploration): string[] {
     const responded = result.emg.channels.filter((channel) => channel.directions.some((one) => one.windows.some((window) => window.response === "increase"))).map((channel) => channel.name);
     sentences.push(responded.length ? `EMG increased after perturbations in ${listed(responded)}.` : "No muscle responded to the perturbations.");
   }
-  if (result.stretch?.directions[0]) sentences.push(`${verdicts[result.stretch.directions[0].verdict]}.`);
+  if (result.stretch?.directions[0]) sentences.push(`${verdicts[result.stretch.directions[0].verdict]}: ${result.stretch.directions[0].verdict_reason}.`);
   return sentences;
 }
