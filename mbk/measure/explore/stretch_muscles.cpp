@@ -295,8 +295,13 @@ Result<std::vector<StretchMuscle>> muscle_of(const std::string& name, std::span<
     StretchMuscle& muscle = muscles[d];
     const StretchDirection& direction = found.directions[d];
     muscle.name = name;
-    muscle.usable = reason.empty();
     muscle.reason = reason;
+    if (reason.empty() && std::ranges::none_of(places, [&](const Place& place) {
+          return place.rested && place.direction == static_cast<Index>(d);
+        })) {
+      muscle.reason = fmt::format("no stretch has a rest of {:.0f} ms or more before it", kMilliseconds * kLeastRest);
+    }
+    muscle.usable = muscle.reason.empty();
     if (!muscle.usable) continue;
     Onsets used;
     int speeds = 0, all = 0, late = 0, early = 0;

@@ -26,11 +26,12 @@ struct Made {
   ExplorationTrial trial;
 };
 
-void append_movement(double from, double to, double speed, std::vector<double>& x, std::vector<double>& v) {
+void append_movement(double from, double to, double speed, std::vector<double>& x, std::vector<double>& v,
+                     double rest = kRest) {
   const double a = 30.0, ramp = speed / a, way = std::abs(to - from), sign = to > from ? 1.0 : -1.0;
   const double duration = way / speed + ramp;
-  for (int i = 0; i < static_cast<int>((kRest + duration) * kRate); ++i) {
-    const double t = i / kRate - kRest, left = duration - t;
+  for (int i = 0; i < static_cast<int>((rest + duration) * kRate); ++i) {
+    const double t = i / kRate - rest, left = duration - t;
     double s = 0.0, rate = 0.0;
     if (t > duration - ramp) {
       s = way - 0.5 * a * left * left, rate = a * left;
@@ -45,13 +46,13 @@ void append_movement(double from, double to, double speed, std::vector<double>& 
 }
 
 Made made(const Muscle& muscle, std::uint64_t seed, int repetitions = 5,
-          const std::vector<double>& speeds = {20.0, 60.0, 100.0, 140.0, 180.0}) {
+          const std::vector<double>& speeds = {20.0, 60.0, 100.0, 140.0, 180.0}, double rest_before_return = kRest) {
   numeric::Random random(seed);
   std::vector<double> x, v, threshold;
   for (int repetition = 0; repetition < repetitions; ++repetition) {
     for (const double speed : speeds) {
       append_movement(kFrom, kTo, speed * kDegree, x, v);
-      append_movement(kTo, kFrom, speed * kDegree, x, v);
+      append_movement(kTo, kFrom, speed * kDegree, x, v, rest_before_return);
       threshold.resize(x.size(), muscle.threshold + muscle.spread * random.normal());
     }
   }
@@ -141,6 +142,15 @@ TEST(StretchMuscles, DeadChannelIsNotUsable) {
   const StretchMuscle& triceps = found.directions.front().muscles[1];
   EXPECT_FALSE(triceps.usable);
   EXPECT_NE(triceps.reason.find("never changes"), std::string::npos);
+}
+
+TEST(StretchMuscles, WithoutRestBeforeTheReturnsNothingIsSaidOfThem) {
+  const auto found = found_in(made({}, 9, 5, {20.0, 60.0, 100.0}, 0.05));
+  for (const StretchMuscle& muscle : found.directions[1].muscles) {
+    EXPECT_FALSE(muscle.usable);
+    EXPECT_NE(muscle.reason.find("rest of 200 ms"), std::string::npos) << muscle.reason;
+  }
+  EXPECT_TRUE(found.directions[0].muscles[0].usable);
 }
 
 TEST(StretchMuscles, WithoutEmgNothingChanges) {
