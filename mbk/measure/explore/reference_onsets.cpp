@@ -22,11 +22,12 @@ std::vector<Onset> reference_onsets(const Matrix& reference, Index rest) {
     if (i - begin >= rest) rests.push_back({begin, i});
     begin = i;
   }
+  // A smooth reference comes to rest and leaves it slowly: in the middle it has its level.
+  const auto middle = [](const numeric::RowRange& one) { return (one.begin + one.end) / 2; };
   std::optional<Index> before;  // a sample of the rest that the pulse left which is not over yet
   for (std::size_t k = 0; k < rests.size(); ++k) {
     if (rests[k].end == rows) break;
-    // At its end a reference rests where it was slowly coming to.
-    const Index from = rests[k].end - 1, to = k + 1 < rests.size() ? rests[k + 1].end - 1 : rows - 1;
+    const Index from = middle(rests[k]), to = k + 1 < rests.size() ? middle(rests[k + 1]) : rows - 1;
     if (before && !differs(to, *before)) {
       before.reset();
       continue;
