@@ -13,12 +13,9 @@
 namespace mbk::report {
 namespace emg_lines {
 
-/// "extension (+)", or the angle in the plane, or the components.
-std::string direction_name(const Vector& direction, Motion motion) {
-  if (direction.size() == 1) {
-    if (motion == Motion::rotation) return direction[0] > 0.0 ? "extension (+)" : "flexion (-)";
-    return direction[0] > 0.0 ? "+" : "-";
-  }
+/// "+" where the position increases, or the angle in the plane, or the components.
+std::string direction_name(const Vector& direction) {
+  if (direction.size() == 1) return direction[0] > 0.0 ? "position +" : "position -";
   if (direction.size() == 2) return fmt::format("{:.0f}°", kDegrees * std::atan2(direction[1], direction[0]));
   return direction_text(direction);
 }
@@ -59,9 +56,11 @@ std::string emg_text(const EmgEstimate& found, Motion motion) {
       {"background", fmt::format("mean of the {:.0f} ms before the onset", kMilliseconds * found.background_s)});
   for (const EmgDirection& one : found.directions) {
     const double scale = motion == Motion::rotation ? kDegrees : kMillimetres;
-    rows.push_back({"direction", fmt::format("{}: {} perturbations of {:.2g} to {:.2g} {}",
-                                             direction_name(one.direction, motion), one.trials, scale * one.smallest,
-                                             scale * one.largest, motion == Motion::rotation ? "°" : "mm")});
+    const std::string smallest = fmt::format("{:.2g}", scale * one.smallest);
+    const std::string largest = fmt::format("{:.2g}", scale * one.largest);
+    rows.push_back({"direction", fmt::format("{}: {} perturbations of {}{} {}", direction_name(one.direction),
+                                             one.trials, smallest == largest ? "" : smallest + " to ", largest,
+                                             motion == Motion::rotation ? "°" : "mm")});
   }
   text += table(rows);
   for (const EmgChannelEstimate& channel : found.channels) {
@@ -86,7 +85,7 @@ std::string emg_text(const EmgEstimate& found, Motion motion) {
         line.push_back(std::move(name));
         for (std::size_t d = first; d < end; ++d) line.push_back(cell(channel.directions[d]));
       };
-      add("direction", [&](const EmgDirectionResponse& one) { return direction_name(one.direction, motion); });
+      add("direction", [&](const EmgDirectionResponse& one) { return direction_name(one.direction); });
       for (std::size_t k = 0; k < found.windows.size(); ++k) {
         const EmgWindow& window = found.windows[k];
         add(fmt::format("{} ({:.0f}-{:.0f} ms)", window.name, kMilliseconds * window.from_s,
