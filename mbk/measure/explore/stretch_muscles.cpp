@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "mbk/base/core/units.h"
@@ -16,14 +17,14 @@
 namespace mbk::explore {
 namespace stretch_muscles {
 
-constexpr double kHalf = 0.025;                      ///< half a window [s]
-constexpr double kMostRest = 0.5, kLeastRest = 0.2;  ///< [s]
-constexpr double kStill = 0.01;                      ///< of the travel: how far the limb may move in a rest
-constexpr double kFalseOnsets = 0.05;                ///< of a muscle, over all stretches
-constexpr double kHalfLevel = 0.05;                  ///< at which each half of a window exceeds the background
-constexpr double kLeastFreedom = 20.0;               ///< of the variation in the rests
-constexpr double kNearlyAll = 0.9;                   ///< of the stretches at a speed
-constexpr double kAfterConstant = 0.05;              ///< of an onset after the start of the plateau [s]
+constexpr double kHalf = 0.025;                            ///< half a window [s]
+constexpr double kMostRest = 0.5, kLeastRest = 0.2;        ///< [s]
+constexpr double kStill = 0.01;                            ///< of the travel: how far the limb may move in a rest
+constexpr double kFalseOnsets = 0.05;                      ///< of a muscle, over all stretches
+constexpr double kHalfLevel = 0.05;                        ///< at which each half of a window exceeds the background
+constexpr double kLeastWindows = 20.0, kLeastRests = 3.0;  ///< of the variation in the rests
+constexpr double kNearlyAll = 0.9;                         ///< of the stretches at a speed
+constexpr double kAfterConstant = 0.05;                    ///< of an onset after the start of the plateau [s]
 constexpr int kLeastSpeeds = 3;
 constexpr Index kMostBins = 60;
 constexpr double kLeastBin = 0.005;  ///< [s]
@@ -91,41 +92,46 @@ std::vector<Place> places_of(const StretchEstimate& found, std::span<const Explo
   return places;
 }
 
-/// Degrees of freedom of the mean square of a window, from its variation within the rests: that of ln(χ²/ν) is 2/ν.
-/// 0 where the rests are too few.
-double window_freedom(const std::vector<Place>& places, const std::vector<Power>& powers, double window) {
-  double squares = 0.0, freedom = 0.0, most = kInfinity;
+/// Degrees of freedom of the mean square of a window in the rests before the stretches of one direction, from its
+/// variation within and between them: that of ln(χ²/ν) is 2/ν. 0 where the rests are too few.
+/// @param window  [s]; absent: whole rests
+double rest_freedom(const std::vector<Place>& places, const std::vector<Power>& powers, Index direction,
+                    std::optional<double> window) {
+  std::vector<double> logs;
+  double most = kInfinity;
   for (const Place& place : places) {
-    if (!place.rested) continue;
+    if (!place.rested || place.direction != direction) continue;
     const Power& power = powers[static_cast<std::size_t>(place.move->recording)];
-    std::vector<double> logs;
-    const auto length = std::max<Index>(std::llround(window / power.sample_time), 1);
-    for (Index end = power.sample(place.move->begin_s); end - length >= power.sample(place.rest_s); end -= length) {
+    const Index rest = power.sample(place.rest_s), begin = power.sample(place.move->begin_s);
+    const auto length =
+        window ? std::max<Index>(std::llround(*window / power.sample_time), 1) : std::max<Index>(begin - rest, 1);
+    most = std::min(most, static_cast<double>(length));
+    for (Index end = begin; end - length >= rest; end -= length) {
       const double mean = power.mean(end - length, end);
       if (mean > 0.0) logs.push_back(std::log(mean));
     }
-    most = std::min(most, static_cast<double>(length));
-    if (logs.size() < 2) continue;
-    const auto n = static_cast<double>(logs.size());
-    squares += (n - 1.0) * numeric::variance(Vector::Map(logs.data(), static_cast<Index>(logs.size())));
-    freedom += n - 1.0;
   }
-  if (freedom < kLeastFreedom || !(squares > 0.0)) return 0.0;
-  return std::min(2.0 * numeric::chi_square_quantile(kFalseOnsets, freedom) / squares, most);
+  const auto n = static_cast<double>(logs.size());
+  if (n < (window ? kLeastWindows : kLeastRests)) return 0.0;
+  const double squares = (n - 1.0) * numeric::variance(Vector::Map(logs.data(), static_cast<Index>(logs.size())));
+  return squares > 0.0 ? std::min(2.0 * numeric::chi_square_quantile(kFalseOnsets, n - 1.0) / squares, most) : 0.0;
 }
 
+/// How EMG varies at rest: degrees of freedom of mean squares.
+struct Variation {
+  double window = 0, half = 0, background = 0;
+};
+
 /// The time at which the EMG is first seen to exceed its background.
-std::optional<double> detected(const Place& place, const Power& power, double freedom, double half_freedom,
-                               double level) {
+std::optional<double> detected(const Place& place, const Power& power, const Variation& rests, double level) {
   const auto half = std::max<Index>(std::llround(kHalf / power.sample_time), 1);
   const Index rest = power.sample(place.rest_s), begin = power.sample(place.move->begin_s),
               end = power.sample(place.move->end_s);
-  const double windows = static_cast<double>(begin - rest) / static_cast<double>(2 * half);
   const double background = power.mean(rest, begin);
   const auto count = (end - begin) / half - 1;
   if (count < 1 || !(background > 0.0)) return std::nullopt;
-  const double limit = numeric::f_quantile(1.0 - level / static_cast<double>(count), freedom, windows * freedom);
-  const double half_limit = numeric::f_quantile(1.0 - kHalfLevel, half_freedom, 2.0 * windows * half_freedom);
+  const double limit = numeric::f_quantile(1.0 - level / static_cast<double>(count), rests.window, rests.background);
+  const double half_limit = numeric::f_quantile(1.0 - kHalfLevel, rests.half, rests.background);
   for (Index k = 0; k < count; ++k) {
     const Index at = begin + k * half;
     if (power.mean(at, at + 2 * half) > limit * background && power.mean(at, at + half) > half_limit * background &&
@@ -282,24 +288,20 @@ Result<std::vector<StretchMuscle>> muscle_of(const std::string& name, std::span<
   const auto powers = MBK_TRY(powers_of(name, recordings, trials, reason));
   std::vector<StretchMuscle> muscles(found.directions.size());
   const double rested = static_cast<double>(std::ranges::count(places, true, &Place::rested));
-  double freedom = 0.0, half_freedom = 0.0;
-  if (reason.empty()) {
-    freedom = window_freedom(places, powers, 2.0 * kHalf);
-    half_freedom = window_freedom(places, powers, kHalf);
-    if (!(freedom > 0.0) || !(half_freedom > 0.0)) {
-      reason = fmt::format("rests of {:.0f} ms or more before the stretches are too few for a background",
-                           kMilliseconds * kLeastRest);
-    }
-  }
   for (std::size_t d = 0; d < muscles.size(); ++d) {
     StretchMuscle& muscle = muscles[d];
     const StretchDirection& direction = found.directions[d];
     muscle.name = name;
     muscle.reason = reason;
-    if (reason.empty() && std::ranges::none_of(places, [&](const Place& place) {
-          return place.rested && place.direction == static_cast<Index>(d);
-        })) {
-      muscle.reason = fmt::format("no stretch has a rest of {:.0f} ms or more before it", kMilliseconds * kLeastRest);
+    Variation rests;
+    if (reason.empty()) {
+      const auto at = static_cast<Index>(d);
+      rests = {rest_freedom(places, powers, at, 2.0 * kHalf), rest_freedom(places, powers, at, kHalf),
+               rest_freedom(places, powers, at, std::nullopt)};
+      if (!(rests.window > 0.0 && rests.half > 0.0 && rests.background > 0.0)) {
+        muscle.reason = fmt::format("rests of {:.0f} ms or more before these stretches are too few for a background",
+                                    kMilliseconds * kLeastRest);
+      }
     }
     muscle.usable = muscle.reason.empty();
     if (!muscle.usable) continue;
@@ -315,7 +317,7 @@ Result<std::vector<StretchMuscle>> muscle_of(const std::string& name, std::span<
         ++one.stretches;
         const auto recording = static_cast<std::size_t>(place.move->recording);
         const Power& power = powers[recording];
-        const auto seen = detected(place, power, freedom, half_freedom, kFalseOnsets / rested);
+        const auto seen = detected(place, power, rests, kFalseOnsets / rested);
         if (!seen) continue;
         const double time = rise_begin(place, power, *seen);
         angle.push_back(position_at(trials[recording], found.axis, time));

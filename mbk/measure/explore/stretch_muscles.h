@@ -16,8 +16,8 @@ namespace mbk::explore {
 /// comes to rest. The background is the mean square of the rest before, 200 to 500 ms. There is an onset at the first
 /// 50 ms that exceed it in an F test, and of which each half exceeds it at 5 %, so that a spike is none. The level of
 /// the F test is 5 % over all windows of all stretches of the muscle in both directions. Its degrees of freedom are
-/// those of the variation of the mean squares within all rests (upper limit of their variance, 95 %), so that EMG that
-/// varies more than noise of constant amplitude needs a larger rise.
+/// those of the variation of the mean squares of windows and rests, within and between the rests of the direction
+/// (upper limit of their variance, 95 %), so that EMG that is unsteady at rest needs a larger rise.
 /// Where it begins: change points of the amplitude, b before, rising along a line in time to a + b, constant after,
 ///   max over both and a of −Σ_t [ln s(t)² + p(t)/s(t)²],
 /// s the amplitude and p the mean square: the likelihood of an amplitude-modulated noise (Staude & Wolf 1999, Med Eng

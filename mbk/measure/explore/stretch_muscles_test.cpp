@@ -148,7 +148,7 @@ TEST(StretchMuscles, WithoutRestBeforeTheReturnsNothingIsSaidOfThem) {
   const auto found = found_in(made({}, 9, 5, {20.0, 60.0, 100.0}, 0.05));
   for (const StretchMuscle& muscle : found.directions[1].muscles) {
     EXPECT_FALSE(muscle.usable);
-    EXPECT_NE(muscle.reason.find("rest of 200 ms"), std::string::npos) << muscle.reason;
+    EXPECT_NE(muscle.reason.find("rests of 200 ms"), std::string::npos) << muscle.reason;
   }
   EXPECT_TRUE(found.directions[0].muscles[0].usable);
 }
