@@ -644,10 +644,8 @@ void add_limits(const StretchEstimate& found, std::size_t recordings, const Stre
       break;
     }
   }
-  limits.push_back(
-      "torque alone does not show whether a muscle was active; a reflex that acts during the slowest stretch is part "
-      "of "
-      "the passive curve");
+  limits.emplace_back(kTorqueAlone);
+  limits.emplace_back("a reflex that acts during the slowest stretch is part of the passive curve");
 }
 
 }  // namespace stretches

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "mbk/base/core/result.h"
@@ -10,6 +11,9 @@
 #include "mbk/model/trial/warning.h"
 
 namespace mbk::explore {
+
+/// A limit of stretches without EMG.
+inline constexpr std::string_view kTorqueAlone = "torque alone does not show whether a muscle was active";
 
 struct StretchOptions {
   std::optional<double> from, to;   ///< analysed positions [rad]; absent: where all stretches have constant velocity

@@ -13,21 +13,22 @@
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/emg.h"
 #include "mbk/measure/explore/emg_responses.h"
+#include "mbk/measure/explore/stretch.h"
 
 namespace mbk::explore {
 namespace stretch_muscles {
 
-constexpr double kHalf = 0.025;                            ///< half a window [s]
-constexpr double kMostRest = 0.5, kLeastRest = 0.2;        ///< [s]
-constexpr double kStill = 0.01;                            ///< of the travel: how far the limb may move in a rest
-constexpr double kFalseOnsets = 0.05;                      ///< of a muscle, over all stretches
-constexpr double kHalfLevel = 0.05;                        ///< at which each half of a window exceeds the background
-constexpr double kLeastWindows = 20.0, kLeastRests = 3.0;  ///< of the variation in the rests
-constexpr double kNearlyAll = 0.9;                         ///< of the stretches at a speed
-constexpr double kAfterConstant = 0.05;                    ///< of an onset after the start of the plateau [s]
-constexpr int kLeastSpeeds = 3;
-constexpr Index kMostBins = 60;
-constexpr double kLeastBin = 0.005;  ///< [s]
+constexpr double kHalf = 0.025;                        ///< half a window [s]
+constexpr double kMaxRest = 0.5, kMinRest = 0.2;       ///< [s]
+constexpr double kStill = 0.01;                        ///< of the travel: how far the limb may move in a rest
+constexpr double kFalseOnsets = 0.05;                  ///< of a muscle, over all stretches
+constexpr double kHalfLevel = 0.05;                    ///< at which each half of a window exceeds the background
+constexpr double kMinWindows = 20.0, kMinRests = 3.0;  ///< of the variation in the rests
+constexpr double kNearlyAll = 0.9;                     ///< of the stretches at a speed
+constexpr double kAfterConstant = 0.05;                ///< of an onset after the start of the plateau [s]
+constexpr int kMinSpeeds = 3;
+constexpr Index kMaxBins = 60;
+constexpr double kMinBin = 0.005;  ///< [s]
 constexpr int kScoringSteps = 6;
 constexpr double kUpper = 0.975;
 
@@ -65,12 +66,12 @@ void find_rest(const ExplorationTrial& trial, int axis, Place& place) {
   const StretchMovement& move = *place.move;
   const double still = kStill * std::abs(move.to - move.from), at = position_at(trial, axis, move.begin_s);
   double start = move.begin_s;
-  while (start > move.begin_s - kMostRest && start > trial.from_s &&
+  while (start > move.begin_s - kMaxRest && start > trial.from_s &&
          std::abs(position_at(trial, axis, start - trial.sample_time) - at) <= still) {
     start -= trial.sample_time;
   }
   place.rest_s = std::max(start, trial.from_s);
-  place.rested = move.begin_s - place.rest_s >= kLeastRest - trial.sample_time;
+  place.rested = move.begin_s - place.rest_s >= kMinRest - trial.sample_time;
 }
 
 std::vector<Place> places_of(const StretchEstimate& found, std::span<const ExplorationTrial> trials) {
@@ -112,7 +113,7 @@ double rest_freedom(const std::vector<Place>& places, const std::vector<Power>& 
     }
   }
   const auto n = static_cast<double>(logs.size());
-  if (n < (window ? kLeastWindows : kLeastRests)) return 0.0;
+  if (n < (window ? kMinWindows : kMinRests)) return 0.0;
   const double squares = (n - 1.0) * numeric::variance(Vector::Map(logs.data(), static_cast<Index>(logs.size())));
   return squares > 0.0 ? std::min(2.0 * numeric::chi_square_quantile(kFalseOnsets, n - 1.0) / squares, most) : 0.0;
 }
@@ -164,8 +165,8 @@ double rise_begin(const Place& place, const Power& power, double seen) {
   const Index begin = power.sample(place.move->begin_s);
   const double last = std::min(std::max(place.move->to_s, seen + 2.0 * kHalf), place.move->end_s);
   const Index end = power.sample(last);
-  const auto shortest = std::max<Index>(std::llround(kLeastBin / power.sample_time), 1);
-  const Index bins = std::clamp<Index>((end - begin) / shortest, 1, kMostBins);
+  const auto shortest = std::max<Index>(std::llround(kMinBin / power.sample_time), 1);
+  const Index bins = std::clamp<Index>((end - begin) / shortest, 1, kMaxBins);
   const double background = std::sqrt(power.mean(power.sample(place.rest_s), begin));
   const double width = static_cast<double>(end - begin) / static_cast<double>(bins);
   const auto edge = [&](Index k) { return begin + static_cast<Index>(std::llround(static_cast<double>(k) * width)); };
@@ -300,7 +301,7 @@ Result<std::vector<StretchMuscle>> muscle_of(const std::string& name, std::span<
                rest_freedom(places, powers, at, std::nullopt)};
       if (!(rests.window > 0.0 && rests.half > 0.0 && rests.background > 0.0)) {
         muscle.reason = fmt::format("rests of {:.0f} ms or more before these stretches are too few for a background",
-                                    kMilliseconds * kLeastRest);
+                                    kMilliseconds * kMinRest);
       }
     }
     muscle.usable = muscle.reason.empty();
@@ -345,7 +346,7 @@ Result<std::vector<StretchMuscle>> muscle_of(const std::string& name, std::span<
     }
     if (all == 0) {
       muscle.threshold_note = "EMG did not exceed the background in any stretch";
-    } else if (speeds < kLeastSpeeds) {
+    } else if (speeds < kMinSpeeds) {
       muscle.threshold_note = fmt::format(
           "nine in ten stretches or more have an onset at {} speed{}; three speeds are needed{}", speeds + early,
           speeds + early == 1 ? "" : "s",
@@ -401,6 +402,7 @@ Result<void> add_stretch_muscles(std::span<const Recording* const> recordings, s
   for (const auto& one : muscles) {
     for (std::size_t d = 0; d < found.directions.size(); ++d) found.directions[d].muscles.push_back(one[d]);
   }
+  std::erase(found.limits, kTorqueAlone);
   for (StretchDirection& direction : found.directions) say_what_torque_misses(direction);
   return {};
 }

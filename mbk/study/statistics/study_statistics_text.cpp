@@ -70,8 +70,7 @@ std::string why_not(Support support, int people, std::string_view whom = "people
     case Support::too_few_sessions:
       return "nobody was measured in two sessions";
     case Support::too_few_raters:
-      return fmt::format("too few people with two raters ({}; at least {} needed)", people,
-                         reliability::kMinPeople);
+      return fmt::format("too few people with two raters ({}; at least {} needed)", people, reliability::kMinPeople);
     case Support::too_few_trials:
       return "too few sessions have two trials";
     case Support::no_variation:
