@@ -445,8 +445,7 @@ void Topics::doubt(const std::vector<std::pair<Topic*, Stream*>>& streams) {
             frames_text(frames), hand->name, frames_text(of_hands), vector->channel == "force" ? 'F' : 'a', source,
             vector->channel == "force" ? 'F' : 'a', source,
             vector->channel == "force"
-                ? "; if they are not parallel, name Fz too, and the recorded orientation of the force's frame as "
-                  "sensor_qx, sensor_qy, sensor_qz and sensor_qw"
+                ? "; if not, also Fz, and the orientation of that frame as sensor_qx to sensor_qw"
                 : "");
       }
     }

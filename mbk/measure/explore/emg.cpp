@@ -91,6 +91,15 @@ Index clipped_runs(const Vector& raw) {
   return runs;
 }
 
+/// Raw EMG is as often below its mean as above it, also with an offset.
+bool is_rectified(const Vector& raw) {
+  constexpr double kSkewed = 0.5;
+  if (raw.minCoeff() < 0.0) return false;
+  const Eigen::ArrayXd centred = raw.array() - raw.mean();
+  const double variance = centred.square().mean();
+  return centred.cube().mean() > kSkewed * std::pow(variance, 1.5);
+}
+
 std::size_t levels_up_to(const Vector& raw, std::size_t most) {
   std::set<double> levels;
   for (const double value : raw) {
@@ -178,6 +187,11 @@ std::vector<EmgFinding> check_emg(const Vector& raw, const EmgProcessing& how) {
     found.push_back({EmgProblem::few_levels,
                      fmt::format("the signal has only {} different values; at least {} are needed", levels, kFewLevels),
                      "raise the amplifier's gain, or check electrode and cable", false});
+    return found;
+  }
+  if (is_rectified(raw)) {
+    found.push_back({EmgProblem::rectified, "the signal is never negative: it is rectified, or an envelope",
+                     "use the raw signal: mbk filters and rectifies it itself", false});
     return found;
   }
   if (const Index runs = clipped_runs(raw); runs >= kClippedRuns) {

@@ -32,6 +32,7 @@ namespace mbk::explore {
 /// What is wrong with one raw channel:
 ///  - not finite: a sample is NaN or infinite; unusable.
 ///  - constant, few levels: fewer than 2 or 32 different values; unusable.
+///  - rectified: no sample is negative, and the skewness is above 0.5; unusable.
 ///  - clipping: two or more runs of at least three samples at the largest or the smallest value.
 ///  - mains hum: more than 5 % of the power in the band is at 50 or 60 Hz and its harmonics, above the median of the
 ///    neighbours between 3 and 8 Hz away.

@@ -1,6 +1,7 @@
 #include "mbk/measure/explore/emg_responses.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,8 @@ constexpr double kLag = 0.01;         ///< [s] over which a displacement says th
 constexpr double kMoves = 0.2;        ///< of the largest such displacement
 constexpr double kNoiseDeviations = 6.0;
 constexpr double kMinThreshold = 0.002;  ///< of the displacement
-constexpr Index kMinEmgTrials = 3;
+constexpr Index kMinEmgTrials = 5;
+constexpr double kSoonest = 0.01;  ///< [s] no reflex of a limb is faster
 constexpr int kReplicates = 1000;
 constexpr double kTail = 0.025;            ///< of the bootstrap at each end of an interval
 constexpr double kMinDeviation = 1e-3;     ///< of a replicate, of that of the trials: all its trials may be one
@@ -278,7 +280,7 @@ class ChannelResponses {
     channel.name = name;
     if (const auto mvc = options_.mvc.find(name); mvc != options_.mvc.end()) channel.mvc = mvc->second;
     const auto count = static_cast<Index>(epochs_.size());
-    Matrix rectified(rows_.all(), count), envelope(all_.curve_time.size(), count);
+    Matrix band(rows_.all(), count), envelope(all_.curve_time.size(), count);
     const auto every = std::max<Index>(emg_samples(kCurveStep, sample_time_), 1);
     double square = 0.0, samples = 0.0;
     rms = kNaN;
@@ -293,25 +295,34 @@ class ChannelResponses {
       Vector signal = MBK_TRY(emg_band(raw, all_.processing));
       square += signal.squaredNorm();
       samples += static_cast<double>(signal.size());
+      for (std::size_t e = 0; e < epochs_.size(); ++e) {
+        if (epochs_[e].recording != r) continue;
+        band.col(static_cast<Index>(e)) = signal.segment(epochs_[e].onset - rows_.before, rows_.all());
+      }
       signal = signal.cwiseAbs().eval();
       const auto smooth = MBK_TRY(emg_envelope(signal, all_.processing));
       for (std::size_t e = 0; e < epochs_.size(); ++e) {
         if (epochs_[e].recording != r) continue;
         const auto column = static_cast<Index>(e);
         const Index first = epochs_[e].onset - rows_.before;
-        rectified.col(column) = signal.segment(first, rows_.all());
         for (Index k = 0; k < envelope.rows(); ++k) envelope(k, column) = smooth[first + k * every];
       }
     }
     rms = std::sqrt(square / samples);
-    channel.background = rectified.topRows(rows_.before).mean();
+    channel.background = band.topRows(rows_.before).cwiseAbs().mean();
     for (std::size_t d = 0; d < all_.directions.size(); ++d) {
       if (all_.directions[d].trials < kMinEmgTrials) continue;
       std::vector<Index> columns;
       for (std::size_t e = 0; e < epochs_.size(); ++e) {
         if (epochs_[e].direction == d) columns.push_back(static_cast<Index>(e));
       }
-      const Matrix own = rectified(Eigen::all, columns);
+      const Matrix signals = band(Eigen::all, columns), own = signals.cwiseAbs();
+      if (auto finding = artefact_in(signals)) {
+        channel.findings.push_back(std::move(*finding));
+        channel.usable = false;
+        channel.directions.clear();
+        return channel;
+      }
       auto response = MBK_TRY(emg_response(own, sample_time_, options_, seed + d));
       EmgDirectionResponse direction;
       direction.direction = all_.directions[d].direction;
@@ -320,12 +331,47 @@ class ChannelResponses {
       direction.curve = envelope(Eigen::all, columns).rowwise().mean();
       direction.windows = std::move(response.windows);
       direction.latency = response.latency;
+      if (direction.latency && direction.latency->value < kSoonest) {
+        channel.findings.push_back(
+            {EmgProblem::too_early,
+             fmt::format("EMG changes {:.1f} ms after the onset, sooner than any reflex ({:.0f} ms): an artefact of "
+                         "motor or motion, or the clocks of EMG and motion differ",
+                         kMilliseconds * direction.latency->value, kMilliseconds * kSoonest),
+             "check cables and clocks", false});
+        channel.usable = false;
+        channel.directions.clear();
+        return channel;
+      }
+      if (direction.latency && direction.latency->interval95.first < kSoonest) direction.latency.reset();
       channel.directions.push_back(std::move(direction));
     }
     return channel;
   }
 
  private:
+  /// EMG has a random phase, so that the mean over trials of the signed signal vanishes; an artefact's does not.
+  /// @param signals  in the band, rows × trials
+  [[nodiscard]] std::optional<EmgFinding> artefact_in(const Matrix& signals) const {
+    constexpr double kAround = 0.01;  // [s] before and after the onset
+    constexpr double kChance = 1e-5;
+    const Index half = emg_samples(kAround, sample_time_), first = std::max<Index>(rows_.before - half, 0);
+    const auto trials = static_cast<double>(signals.cols());
+    const double background = signals.topRows(first).cwiseAbs().mean();
+    const double limit = numeric::student_quantile(1.0 - kChance, static_cast<int>(signals.cols()) - 1);
+    for (Index row = first; row < std::min(rows_.before + half, signals.rows()); ++row) {
+      const double mean = signals.row(row).mean();
+      const double error = std::sqrt((signals.row(row).array() - mean).square().sum() / (trials * (trials - 1.0)));
+      if (!(std::abs(mean) > limit * error && std::abs(mean) > background)) continue;
+      return EmgFinding{EmgProblem::artefact,
+                        fmt::format("{:.1f} ms after the onset the mean of the signed signal over {} perturbations is "
+                                    "{:.1f} times the background, as that of EMG cannot be: an artefact",
+                                    kMilliseconds * static_cast<double>(row - rows_.before) * sample_time_,
+                                    signals.cols(), std::abs(mean) / background),
+                        "separate the cables of EMG from motor and stimulator", false};
+    }
+    return std::nullopt;
+  }
+
   std::span<const EmgRecording> recordings_;
   std::span<const Epoch> epochs_;
   const EmgEstimate& all_;
@@ -431,6 +477,11 @@ Result<EmgEstimate> emg_responses(std::span<const EmgRecording> recordings, doub
         found.notes.push_back(fmt::format("'{}' is not in every recording, so it is omitted", channel.name));
       }
     }
+  }
+  for (const auto& [muscle, volts] : options.mvc) {
+    if (std::ranges::find(names, muscle) != names.end()) continue;
+    return bad_usage(fmt::format("--mvc names {}, which is no EMG channel of these recordings", muscle),
+                     fmt::format("the channels are {}", fmt::join(names, ", ")));
   }
   if (names.empty()) {
     return bad_data("there is no EMG channel", "record EMG, or name its columns emg_MUSCLE with --channels");

@@ -55,8 +55,8 @@ struct EmgResponse {
 /// interval: 2.5 % and 97.5 % of τ in trials drawn with replacement, each τ anywhere between the two samples beside it.
 /// A threshold of background plus some standard deviations detects late, by what the response needs to reach it; the
 /// change point does not. Of a response that rises slowly it is the middle of the rise.
-/// @param rectified N×G, G ≥ 3    @param seed  of the bootstrap
-/// @fails data: fewer than 3 trials; no signal before the onset.
+/// @param rectified N×G, G ≥ 5    @param seed  of the bootstrap
+/// @fails data: fewer than 5 trials; no signal before the onset.
 [[nodiscard]] Result<EmgResponse> emg_response(const Matrix& rectified, double sample_time, const EmgOptions& options,
                                                std::uint64_t seed);
 
@@ -72,7 +72,7 @@ struct EmgRecording {
 /// Responses of all channels emg_* that all recordings have, with their epochs pooled. One channel at a time is
 /// processed, so that only one is in memory beside the recordings. Directions differ by 15° or more. An onset is
 /// omitted if the epoch is not within the recording or if the onset before it is less than an epoch away.
-/// @fails usage: windows not rising. data: no recording has EMG; rates differ; fewer than 3 onsets in every direction.
+/// @fails usage: windows not rising. data: no recording has EMG; rates differ; fewer than 5 onsets in every direction.
 /// As emg_processing_at.
 [[nodiscard]] Result<EmgEstimate> emg_responses(std::span<const EmgRecording> recordings, double sample_time,
                                                 const EmgOptions& options);

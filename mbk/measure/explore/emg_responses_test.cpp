@@ -123,8 +123,8 @@ TEST(EmgResponse, IsReproducible) {
   EXPECT_EQ(one->latency->interval95, other->latency->interval95);
 }
 
-TEST(EmgResponse, NeedsThreeTrialsAndRisingWindows) {
-  EXPECT_FALSE(emg_response(epochs(2, 2.0, 0.03, 3), kT, {}, 1));
+TEST(EmgResponse, NeedsFiveTrialsAndRisingWindows) {
+  EXPECT_FALSE(emg_response(epochs(4, 2.0, 0.03, 3), kT, {}, 1));
   EmgOptions falling;
   falling.edges_s = {0.05, 0.02};
   EXPECT_FALSE(emg_response(epochs(10, 2.0, 0.03, 3), kT, falling, 1));
@@ -235,6 +235,30 @@ TEST(EmgResponses, OmitOnsetsWithoutAWholeEpoch) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->omitted, 2);
   EXPECT_EQ(found->onsets, 10);
+}
+
+TEST(EmgResponses, OfAnArtefactOrOfAClockThatIsEarlyAreNone) {
+  const auto biceps_of = [](const Made& made) { return emg_responses(made.sources, kT, {})->channels[0]; };
+  Made made = make(1, 24);
+  Vector& signal = made.recordings[0].channels[0].values;
+  const double size = 20.0 * signal.cwiseAbs().mean();
+  for (const Onset& onset : made.sources[0].onsets) signal.segment(onset.sample, 4) << size, size, -size, -size;
+  const EmgChannelEstimate struck = biceps_of(made);
+  EXPECT_FALSE(struck.usable);
+  ASSERT_FALSE(struck.findings.empty());
+  EXPECT_EQ(struck.findings.back().problem, EmgProblem::artefact);
+  made = make(1, 24);
+  for (Onset& onset : made.sources[0].onsets) onset.sample += std::llround(0.027 / kT);  // 3 ms before the response
+  const EmgChannelEstimate early = biceps_of(made);
+  EXPECT_FALSE(early.usable);
+  ASSERT_FALSE(early.findings.empty());
+  EXPECT_EQ(early.findings.back().problem, EmgProblem::too_early);
+}
+
+TEST(EmgResponses, KnowTheMusclesOfTheMvc) {
+  EmgOptions options;
+  options.mvc["emg_nosuch"] = 1e-3;
+  EXPECT_FALSE(emg_responses(make(1, 12).sources, kT, options));
 }
 
 TEST(EmgResponses, NeedEmgAndOnsets) {

@@ -119,6 +119,8 @@ TEST(CheckEmg, FindsEachProblem) {
   EXPECT_TRUE(has(problems((clean / rms).array().round().matrix()), EmgProblem::few_levels));
   EXPECT_TRUE(has(problems(clean.cwiseMax(-rms).cwiseMin(rms)), EmgProblem::clipping));
   EXPECT_TRUE(has(problems(clean + sine(20000, 2.0, 3.0 * rms)), EmgProblem::movement_artefact));
+  EXPECT_TRUE(has(problems(clean.cwiseAbs()), EmgProblem::rectified));
+  EXPECT_FALSE(has(problems((clean.array() + 10.0 * rms).matrix()), EmgProblem::rectified)) << "an offset only";
   for (const double mains : {50.0, 60.0}) {
     const auto found = problems(clean + sine(20000, mains, rms));
     ASSERT_TRUE(has(found, EmgProblem::mains_hum));

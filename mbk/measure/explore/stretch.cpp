@@ -6,8 +6,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/core/units.h"
 #include "mbk/base/dsp/savitzky_golay.h"
 #include "mbk/base/numeric/distributions.h"
@@ -265,6 +267,7 @@ struct Side {
   std::vector<Course> courses;
   std::vector<double> speed;  ///< of the groups, increasing
   Interval range;
+  bool accelerates = false;  ///< the range reaches beyond the plateaus of velocity
   Index bins = 0;
   [[nodiscard]] Vector centres() const {
     Vector at(bins);
@@ -319,7 +322,7 @@ Side side_of(int direction, const std::vector<Move>& moves, const std::vector<Si
   Side side;
   side.direction = direction;
   const bool whole = options.from.has_value() || options.to.has_value();
-  double low = -kInfinity, high = kInfinity, travel = kInfinity;
+  double low = -kInfinity, high = kInfinity, travel = kInfinity, constant_low = -kInfinity, constant_high = kInfinity;
   std::vector<Move> here;
   for (const Move& move : moves) {
     if (move.direction != direction) continue;
@@ -328,12 +331,16 @@ Side side_of(int direction, const std::vector<Move>& moves, const std::vector<Si
     const double a = position[whole ? move.begin : move.from], b = position[(whole ? move.end : move.to) - 1];
     low = std::max(low, std::min(a, b));
     high = std::min(high, std::max(a, b));
+    constant_low = std::max(constant_low, std::min(position[move.from], position[move.to - 1]));
+    constant_high = std::min(constant_high, std::max(position[move.from], position[move.to - 1]));
     travel = std::min(travel, std::abs(position[move.end - 1] - position[move.begin]));
   }
   if (options.from) low = std::max(low, *options.from);
   if (options.to) high = std::min(high, *options.to);
   if (here.empty() || !(high - low > kMinRange * travel)) return side;
   side.range = {low, high};
+  constexpr double kBeyond = 0.02;  // of the range
+  side.accelerates = std::max(constant_low - low, high - constant_high) > kBeyond * (high - low);
   double fastest = 0.0;
   for (const Move& move : here) {
     fastest = std::max(fastest, move.speed * signals[static_cast<std::size_t>(move.recording)].sample_time);
@@ -418,6 +425,7 @@ void judge(const Side& side, const StretchOptions& options, bool sign_reversed, 
   std::vector<std::vector<const Course*>> members;
   const Units units = units_of(side, members);
   if (side.speed.size() < 2) {
+    found.slope.value = found.rise.value = kNaN;
     found.interval_basis = "nothing: there is one speed only";
     found.verdict_reason = "two speeds are needed, three without repetitions";
     return;
@@ -434,6 +442,12 @@ void judge(const Side& side, const StretchOptions& options, bool sign_reversed, 
     found.verdict_reason = "the fastest speed is less than twice the slowest";
   } else if (!(slope.freedom > 0.0)) {
     found.verdict_reason = "there are too few stretches for an interval";
+  } else if (Estimated{-slope.value, slope.error, slope.freedom}.positive(kOneSided)) {
+    found.verdict_reason =
+        "the torque falls with speed, which no passive limb does: its sign may be reversed, its offset may drift, or "
+        "the person helps";
+  } else if (side.accelerates) {
+    found.verdict_reason = "the analysed angles contain acceleration, whose torque looks like an effect of speed";
   } else if (rise.positive(kOneSided) && strict.positive(kOneSided)) {
     found.verdict = VelocityDependence::velocity_dependent;
     found.verdict_reason =
@@ -560,7 +574,8 @@ StretchDirection described(const Side& side, const std::vector<Move>& moves, con
     if (g > 0) {
       speed.excess = Vector::Zero(side.bins);
       for (const Course* one : here) speed.excess += (one->torque - found.passive) / static_cast<double>(here.size());
-      for (const double angle : find_catch(side, g, !sign_reversed, shapes, speed)) {
+      const bool judged = found.verdict != VelocityDependence::cannot_be_judged;
+      for (const double angle : find_catch(side, g, judged, shapes, speed)) {
         angles.push_back(angle);
         speeds.push_back(speed.speed);
       }
@@ -621,6 +636,19 @@ Index stretched_axis(std::span<const ExplorationTrial> trials, std::vector<std::
   return axis;
 }
 
+/// Whether each recording holds its speeds in rising or in falling order, several times each.
+bool in_order(const StretchDirection& found) {
+  bool rises = true, falls = true, repeats = false;
+  for (std::size_t k = 1; k < found.stretches.size(); ++k) {
+    const StretchMovement &before = found.stretches[k - 1], &now = found.stretches[k];
+    if (before.recording != now.recording) continue;
+    rises = rises && now.speed > before.speed / kSameSpeed;
+    falls = falls && now.speed < before.speed * kSameSpeed;
+    repeats = repeats || std::abs(now.speed - before.speed) < (kSameSpeed - 1.0) * before.speed;
+  }
+  return repeats && rises != falls;
+}
+
 void add_limits(const StretchEstimate& found, std::size_t recordings, const StretchOptions& options,
                 std::vector<std::string>& limits) {
   limits.push_back(
@@ -631,10 +659,12 @@ void add_limits(const StretchEstimate& found, std::size_t recordings, const Stre
         "an offset of the torque that differs between recordings cannot be distinguished from an effect of "
         "speed where each recording holds one speed");
   }
-  limits.push_back(options.inertia > 0.0 ? "inertia was subtracted as given"
-                   : options.from || options.to
-                       ? "inertia was not subtracted: angles outside the plateaus of velocity contain its torque"
-                       : "inertia was excluded by using only the plateaus of velocity");
+  limits.push_back(
+      options.inertia > 0.0 ? "inertia was subtracted as given"
+      : options.from || options.to
+          ? "inertia was not subtracted: angles outside the plateaus of velocity contain its torque"
+          : "inertia was not subtracted; on the plateaus of velocity the speed varies by up to 10 %, so that "
+            "some of its torque remains at high speeds");
   for (const StretchDirection& one : found.directions) {
     if (one.speeds.size() > 1 &&
         std::ranges::any_of(one.speeds, [](const StretchSpeed& speed) { return speed.repetitions < 2; })) {
@@ -643,6 +673,11 @@ void add_limits(const StretchEstimate& found, std::size_t recordings, const Stre
           "more");
       break;
     }
+  }
+  if (std::ranges::any_of(found.directions, in_order)) {
+    limits.emplace_back(
+        "the speeds follow each other in order: a drift of the torque's offset looks like an effect of speed, and the "
+        "interval of the slope does not contain it; mix the order");
   }
   limits.emplace_back(kTorqueAlone);
   limits.emplace_back("a reflex that acts during the slowest stretch is part of the passive curve");
@@ -676,6 +711,12 @@ Result<StretchEstimate> stretch(std::span<const ExplorationTrial> trials, const 
         fmt::format("{} movement{} with constant velocity found", moves.size(), moves.size() == 1 ? "" : "s"),
         "record stretches at two constant speeds or more, several times each");
   }
+  const Vector& first = signals.front().position;
+  if (trials.front().motion == Motion::rotation && first.maxCoeff() - first.minCoeff() > 2.0 * std::numbers::pi) {
+    return bad_data(fmt::format("the position ranges from {:.4g} to {:.4g} rad, as no joint does", first.minCoeff(),
+                                first.maxCoeff()),
+                    "if it is in degrees, state it: --channels x=NAME:deg");
+  }
   found.inertia_found = found_inertia(moves, signals, options.inertia);
   const bool reversed =
       found.inertia_found && found.inertia_found->interval95 && found.inertia_found->interval95->second < 0.0;
@@ -696,6 +737,16 @@ Result<StretchEstimate> stretch(std::span<const ExplorationTrial> trials, const 
       continue;
     }
     found.directions.push_back(described(side, moves, signals, options, reversed));
+  }
+  for (const StretchDirection& one : found.directions) {
+    if (reversed || !one.slope.interval95 || !(one.slope.interval95->second < 0.0)) continue;
+    warnings.push_back({WarningCode::force_sign_reversed,
+                        fmt::format("the torque that resists falls with speed, by {:.2g} N·m·s/rad [{:.2g}, {:.2g}], "
+                                    "as that of no passive limb does",
+                                    one.slope.value, one.slope.interval95->first, one.slope.interval95->second),
+                        "check the sign of the torque in --channels, a drift of its offset, and whether the person "
+                        "helped"});
+    found.usable = false;
   }
   if (found.directions.empty()) {
     return bad_data(

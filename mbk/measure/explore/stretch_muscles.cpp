@@ -228,7 +228,8 @@ struct Onsets {
   std::vector<Index> group;
 };
 
-void extrapolate(const Onsets& used, int speeds, const Interval& range, StretchMuscle& muscle) {
+/// @param start  where the stretches begin
+void extrapolate(const Onsets& used, int speeds, const Interval& range, double start, StretchMuscle& muscle) {
   const auto n = static_cast<Index>(used.speed.size());
   const Vector v = Vector::Map(used.speed.data(), n), y = Vector::Map(used.angle.data(), n);
   const Vector centred = v.array() - v.mean();
@@ -237,6 +238,18 @@ void extrapolate(const Onsets& used, int speeds, const Interval& range, StretchM
   const Vector residual = (y.array() - y.mean()).matrix() - slope * centred;
   muscle.threshold = weighted_sum(weight, y, residual, used.group);
   muscle.shift = slope;
+  constexpr double kNearStart = 0.05;  // of the range
+  const Interval within = muscle.threshold->interval95.value_or(Interval(kInfinity, -kInfinity));
+  if (std::abs(muscle.threshold->value - start) < kNearStart * (range.second - range.first) ||
+      (within.first <= start && start <= within.second)) {
+    muscle.threshold.reset();
+    muscle.shift.reset();
+    muscle.threshold_note =
+        "the onsets extrapolate to where the stretches begin, as those of a reaction at a constant time after the "
+        "start "
+        "do: it cannot be distinguished from a threshold";
+    return;
+  }
   const bool outside = muscle.threshold->value < range.first || muscle.threshold->value > range.second;
   muscle.threshold_note = fmt::format("from {} stretches at {} speeds{}", n, speeds,
                                       outside ? "; it is outside the stretched positions" : "");
@@ -352,7 +365,8 @@ Result<std::vector<StretchMuscle>> muscle_of(const std::string& name, std::span<
           speeds + early == 1 ? "" : "s",
           early > 0 ? fmt::format("; at {} of them the onset is before the velocity is constant", early) : "");
     } else {
-      extrapolate(used, speeds, stretched_range(direction, trials, found.axis), muscle);
+      const Interval range = stretched_range(direction, trials, found.axis);
+      extrapolate(used, speeds, range, direction.direction > 0 ? range.first : range.second, muscle);
       if (late + early > 0) {
         muscle.threshold_note += fmt::format("; {} other speed{} hid{} late or early onsets", late + early,
                                              late + early == 1 ? "" : "s", late + early == 1 ? "es" : "e");

@@ -111,6 +111,14 @@ TEST(StretchMuscles, ThresholdAndShiftAreThoseOfTheReflex) {
   EXPECT_NEAR(*biceps.shift, kLatency - muscle.shift, 0.03);
 }
 
+TEST(StretchMuscles, AReactionAtAConstantTimeIsNoThreshold) {
+  // 0.2 s after the start: the onset is where the stretch begins, and 0.2 s times the speed.
+  const auto found = found_in(made({.gain = 400.0, .threshold = kFrom, .shift = -0.2, .spread = 0.0}, 3));
+  const StretchMuscle& biceps = found.directions.front().muscles.front();
+  EXPECT_FALSE(biceps.threshold);
+  EXPECT_TRUE(biceps.responds());
+}
+
 TEST(StretchMuscles, RelaxedMuscleDoesNotRespond) {
   const auto found = found_in(made({}, 4));
   for (const StretchDirection& one : found.directions) {

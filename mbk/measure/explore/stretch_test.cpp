@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -109,6 +110,47 @@ TEST(Stretch, SlopeIsTheViscosityAndThePassiveCurveIsThatOfTheSlowest) {
     EXPECT_NEAR(up.passive[i], limb.torque(up.angle[i], kSpeeds[0], 0.0), 0.02);
   }
   for (std::size_t k = 1; k < up.speeds.size(); ++k) EXPECT_EQ(up.speeds[k].catch_finding, CatchFinding::none);
+}
+
+TEST(Stretch, TorqueThatFallsWithSpeedIsNotJudged) {
+  std::vector<Warning> warnings;
+  const ExplorationTrial trial = many_speeds({.inertia = 0.0, .viscosity = -0.3}, 4, 0.02);
+  const auto found = stretch({&trial, 1}, {}, warnings);
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_FALSE(found->usable);
+  EXPECT_EQ(warnings.front().code, WarningCode::force_sign_reversed);
+  const StretchDirection& up = found->directions.front();
+  EXPECT_EQ(up.verdict, VelocityDependence::cannot_be_judged);
+  for (const StretchSpeed& one : up.speeds) EXPECT_FALSE(one.catch_angle);
+}
+
+TEST(Stretch, AnglesWithAccelerationAreNotJudged) {
+  const auto found = found_in({many_speeds({.gain = 5.0}, 4, 0.02)}, {.from = kFrom, .to = kTo});
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_EQ(found->directions.front().verdict, VelocityDependence::cannot_be_judged);
+}
+
+TEST(Stretch, SpeedsInOrderAreSaidToLookLikeADrift) {
+  std::vector<double> x, f;
+  for (const double speed : kSpeeds) {
+    for (int repetition = 0; repetition < 4; ++repetition) {
+      append({}, kFrom, kTo, speed, x, f);
+      append({}, kTo, kFrom, speed, x, f);
+    }
+  }
+  const auto says_order = [](const StretchEstimate& found) {
+    return std::ranges::any_of(found.limits, [](const std::string& one) { return one.find("drift") != one.npos; });
+  };
+  EXPECT_TRUE(says_order(*found_in({trial_of(x, f, 0.02)})));
+  EXPECT_FALSE(says_order(*found_in({many_speeds({}, 4, 0.02)})));
+}
+
+TEST(Stretch, DegreesThatAreReadAsRadiansAreRefused) {
+  ExplorationTrial trial = many_speeds({}, 4, 0.02);
+  trial.input *= kDegrees;
+  const auto found = found_in({trial});
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().line().find(":deg"), std::string::npos);
 }
 
 TEST(Stretch, ViscosityAboveTheGivenLimitIsVelocityDependent) {

@@ -30,6 +30,9 @@ enum class EmgProblem {
   mains_hum,          ///< 50 or 60 Hz and harmonics
   movement_artefact,  ///< slow motion of electrode and cable
   weak,               ///< far below the other channels
+  rectified,          ///< not a raw signal
+  artefact,           ///< the same deflection after each onset
+  too_early,          ///< sooner than a reflex
 };
 
 [[nodiscard]] constexpr auto word_table(EmgProblem) {
@@ -40,7 +43,10 @@ enum class EmgProblem {
                                           {clipping, "clipping"},
                                           {mains_hum, "mains-hum"},
                                           {movement_artefact, "movement-artefact"},
-                                          {weak, "weak"}});
+                                          {weak, "weak"},
+                                          {rectified, "rectified"},
+                                          {artefact, "artefact"},
+                                          {too_early, "too-early"}});
 }
 
 /// A finding about a raw EMG channel.

@@ -55,12 +55,14 @@ std::string emg_text(const EmgEstimate& found, Motion motion) {
   rows.push_back(
       {"background", fmt::format("mean of the {:.0f} ms before the onset", kMilliseconds * found.background_s)});
   for (const EmgDirection& one : found.directions) {
-    const double scale = motion == Motion::rotation ? kDegrees : kMillimetres;
+    const double scale = motion == Motion::rotation ? kDegrees : motion == Motion::translation ? kMillimetres : 1.0;
     const std::string smallest = fmt::format("{:.2g}", scale * one.smallest);
     const std::string largest = fmt::format("{:.2g}", scale * one.largest);
     rows.push_back({"direction", fmt::format("{}: {} perturbations of {}{} {}", direction_name(one.direction),
                                              one.trials, smallest == largest ? "" : smallest + " to ", largest,
-                                             motion == Motion::rotation ? "°" : "mm")});
+                                             motion == Motion::rotation      ? "°"
+                                             : motion == Motion::translation ? "mm"
+                                                                             : "m or rad")});
   }
   text += table(rows);
   for (const EmgChannelEstimate& channel : found.channels) {
