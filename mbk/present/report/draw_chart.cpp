@@ -340,7 +340,7 @@ std::string mark(std::size_t k, double x, double y) {
 }
 
 constexpr double kText = 13.0, kSmallText = 12.0, kLine = 15.0, kCharacter = 7.4;  // of text in SVG's units
-constexpr double kTextPt = 8.0, kMillimetres = 25.4 / 72.0;                        // of kText; of a point
+constexpr double kTextPt = 8.0, kMillimetresPerPoint = 25.4 / 72.0;                // of kText; of a point
 
 /// About the width of a text in SVG's units.
 double width_of(const std::string& text, double size = kText) {
@@ -635,7 +635,7 @@ std::string svg_column(const Chart& given, double page, bool with_y_label, bool 
 }  // namespace
 
 std::string charts_svg(const std::string& title, std::span<const Chart> charts, double width_mm) {
-  const double unit_mm = kTextPt * kMillimetres / kText, page = width_mm / unit_mm;
+  const double unit_mm = kTextPt * kMillimetresPerPoint / kText, page = width_mm / unit_mm;
   const double column = page / static_cast<double>(std::max<std::size_t>(1, charts.size()));
   constexpr double kNarrow = 200.0;  // the name of the y axis would be longer than the axis
   const bool named = charts.size() == 1 || column > kNarrow;
