@@ -11,14 +11,14 @@
 namespace mbk::validation {
 namespace stretch_test {
 
-TEST(StretchStudy, RefutesNothingIn200Limbs) {
-  const auto table = stretch_study({.runs = 200, .seed = 5});  // `mbk validate stretch` takes more
+TEST(StretchStudy, RefutesNothingIn60Limbs) {
+  const auto table = stretch_study({.runs = 60, .seed = 5});  // `mbk validate stretch` takes more
   ASSERT_TRUE(table) << table.error().line();
   EXPECT_EQ(table->study, "stretch");
   expect_nothing_refuted(*table);
   for (const ValidationRow& row : table->rows) {
     if (row.what == "spastic: called velocity-dependent") {
-      EXPECT_GT(row.value, 60.0);
+      EXPECT_GT(row.value, 50.0);
     }
   }
 }
