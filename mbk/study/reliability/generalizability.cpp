@@ -193,20 +193,20 @@ class RaterLikelihood {
     result.mean = x[0];
     if (!with_derivatives) return result;
 
-    const Matrix Kinv = factor.solve(Matrix(Matrix::Identity(width_, width_)));
+    const Matrix kinv = factor.solve(Matrix(Matrix::Identity(width_, width_)));
     const Matrix SQ = S.asDiagonal() * Q;
-    const Matrix TPT = Q - SQ.transpose() * Kinv * SQ;
+    const Matrix TPT = Q - SQ.transpose() * kinv * SQ;
     const Vector TPy = b - SQ.transpose() * x;
     result.g = Vector::Zero(count);
     result.H = Matrix::Zero(count, count);
     std::vector<Matrix> sums(terms_.size(), Matrix::Zero(width_, width_));  // Σ AᵀBA of the terms within people
     for (std::size_t i = 0; i < design_.people.size(); ++i) {
-      add_person(i, inverses[i], W[i] * S.asDiagonal(), z[i], W[i], Kinv, SQ, x, sums, result);
+      add_person(i, inverses[i], W[i] * S.asDiagonal(), z[i], W[i], kinv, SQ, x, sums, result);
     }
     for (Index k = 0; k < count; ++k) {
       const FacetTerm term = terms_[static_cast<std::size_t>(k)];
       if (!is_crossed(term)) {
-        const Matrix left = Kinv * sums[static_cast<std::size_t>(k)] * Kinv;
+        const Matrix left = kinv * sums[static_cast<std::size_t>(k)] * kinv;
         for (Index l = 0; l <= k; ++l) {
           if (is_crossed(terms_[static_cast<std::size_t>(l)])) continue;
           result.H(k, l) += left.cwiseProduct(sums[static_cast<std::size_t>(l)]).sum();
@@ -239,11 +239,11 @@ class RaterLikelihood {
 
   /// What one person adds to the derivatives, but for what pairs of people share (`sums`).
   void add_person(std::size_t i, const Matrix& inverse, const Matrix& A, const Vector& z, const Matrix& W,
-                  const Matrix& Kinv, const Matrix& SQ, const Vector& x, std::vector<Matrix>& sums,
+                  const Matrix& kinv, const Matrix& SQ, const Vector& x, std::vector<Matrix>& sums,
                   RestrictedLikelihood& result) const {
     const PersonCells& person = design_.people[i];
     const auto count = static_cast<Index>(terms_.size());
-    const Matrix E = A * Kinv * A.transpose(), P = inverse - E, PT = W - A * (Kinv * SQ);
+    const Matrix E = A * kinv * A.transpose(), P = inverse - E, PT = W - A * (kinv * SQ);
     const Vector u = z - A * x;
     std::vector<Matrix> PB(terms_.size()), EB(terms_.size());
     for (Index k = 0; k < count; ++k) {
