@@ -33,13 +33,14 @@ struct StretchOptions {
 /// recordings; with one for each speed, by the scatter about the line.
 /// Verdict: velocity-dependent if the rise within the stretch (last less first third) grows with speed, beyond a
 /// viscosity that doubles over the stretch: the lower limits (97.5 %) of the slopes of L − E and of L − 2E are above 0,
-/// E and L the mean r of first and last third. A constant viscosity has L = E, and no offset changes L − E. Or, if
-/// options.viscosity is set, if the lower limit of the slope is above that.
-/// Catch: the same two tests of one speed against the slowest, at 5 % over all speeds. Its angle is the start of the
-/// best-fitting curve that is flat, rises along a line and is flat again, mean over repetitions; its interval includes
-/// the passive curve's uncertainty by jackknife. The threshold at rest is extrapolated from three or more of them over
-/// speed (Levin & Feldman 1994, Brain Res 657:23; Calota, Feldman & Levin 2008, Clin Neurophysiol 119:2329). It has no
-/// interval: from torque it is biased (docs/theory/stretch.md).
+/// E and L the mean r of first and last third. Nothing is judged where the slope is below 0 (97.5 %), as that of no
+/// passive limb is, or where the analysed positions contain acceleration. A constant viscosity has L = E, and no offset
+/// changes L − E. Or, if options.viscosity is set, if the lower limit of the slope is above that. Catch: the same two
+/// tests of one speed against the slowest, at 5 % over all speeds. Its angle is the start of the best-fitting curve
+/// that is flat, rises along a line and is flat again, mean over repetitions; its interval includes the passive curve's
+/// uncertainty by jackknife. The threshold at rest is extrapolated from three or more of them over speed (Levin &
+/// Feldman 1994, Brain Res 657:23; Calota, Feldman & Levin 2008, Clin Neurophysiol 119:2329). It has no interval: from
+/// torque it is biased (docs/theory/stretch.md).
 /// @param trials  whole recordings of one limb, each of one or more movements
 /// @fails  data: fewer than two movements with constant velocity; no common angles. usage: an empty range.
 [[nodiscard]] Result<StretchEstimate> stretch(std::span<const ExplorationTrial> trials, const StretchOptions& options,
