@@ -10,20 +10,10 @@
 namespace mbk::laboratory {
 namespace {
 
-constexpr int kBandOrder = 4;  // even, so that all sections are of second order
+constexpr int kBandOrder = 4;
 
 /// After this many periods of its lower edge the noise is stationary.
 constexpr double kSettledAfter = 20.0;
-
-/// The Butterworth high-pass with the poles of a low-pass of even order: a prototype's poles are its own reciprocals.
-dsp::SectionCascade high_pass(dsp::SectionCascade lowpass) {
-  for (dsp::SecondOrderSection& s : lowpass) {
-    s.b0 = 0.25 * (1.0 - s.a1 + s.a2);  // gain 1 at half the rate
-    s.b1 = -2.0 * s.b0;
-    s.b2 = s.b0;
-  }
-  return lowpass;
-}
 
 Index settling_samples(const SurfaceEmgOptions& options, double rate) {
   return static_cast<Index>(std::ceil(kSettledAfter * rate / options.lowest.value));
@@ -42,7 +32,7 @@ Result<SurfaceEmg> SurfaceEmg::create(const SurfaceEmgOptions& options, Hertz ra
                                  options.lowest.value, options.highest.value, rate.value),
                      "increase rate_hz, to 2000 for a band of 20 to 450 Hz");
   }
-  dsp::SectionCascade band = high_pass(MBK_TRY(dsp::butterworth_lowpass(kBandOrder, options.lowest, rate)));
+  auto band = MBK_TRY(dsp::butterworth_highpass(kBandOrder, options.lowest, rate));
   const auto upper = MBK_TRY(dsp::butterworth_lowpass(kBandOrder, options.highest, rate));
   band.insert(band.end(), upper.begin(), upper.end());
   dsp::CausalFilter impulse(band);
