@@ -152,12 +152,17 @@ Result<Vector> emg_band(const Vector& raw, const EmgProcessing& how) {
   return filtered(raw, cascade, how.low_hz, how.rate_hz);
 }
 
+Vector running_sums(const Vector& values) {
+  Vector sums(values.size() + 1);
+  sums[0] = 0.0;
+  for (Index i = 0; i < values.size(); ++i) sums[i + 1] = sums[i] + values[i];
+  return sums;
+}
+
 Result<Vector> emg_envelope(const Vector& rectified, const EmgProcessing& how) {
   if (how.envelope_rms_s > 0.0) {
     const Index n = rectified.size(), half = std::max<Index>(std::llround(0.5 * how.envelope_rms_s * how.rate_hz), 1);
-    Vector sums(n + 1);
-    sums[0] = 0.0;
-    for (Index i = 0; i < n; ++i) sums[i + 1] = sums[i] + rectified[i] * rectified[i];
+    const Vector sums = running_sums(rectified.cwiseAbs2());
     Vector envelope(n);
     for (Index i = 0; i < n; ++i) {
       const Index from = std::max<Index>(i - half, 0), to = std::min<Index>(i + half + 1, n);

@@ -29,6 +29,9 @@ namespace mbk::explore {
 /// @fails as emg_band
 [[nodiscard]] Result<Vector> emg_envelope(const Vector& rectified, const EmgProcessing& how);
 
+/// Sums of the first 0, 1 … N values, N + 1.
+[[nodiscard]] Vector running_sums(const Vector& values);
+
 /// What is wrong with one raw channel:
 ///  - not finite: a sample is NaN or infinite; unusable.
 ///  - constant, few levels: fewer than 2 or 32 different values; unusable.

@@ -78,11 +78,6 @@ Matrix bootstrap_weights(Index trials, std::uint64_t seed) {
   return weights;
 }
 
-/// A window's mean of each trial, and which rows it has.
-struct WindowRows {
-  Index begin = 0, end = 0;
-};
-
 EmgWindowResponse window_response(const Vector& window, const Vector& background, const Matrix& weights,
                                   std::size_t windows) {
   const Index trials = window.size();
@@ -114,14 +109,6 @@ EmgWindowResponse window_response(const Vector& window, const Vector& background
     found.response = found.ratio > 1.0 ? EmgChange::increase : EmgChange::decrease;
   }
   return found;
-}
-
-/// Sums of the first 0, 1 … N values.
-Vector running_sums(const Vector& values) {
-  Vector sums(values.size() + 1);
-  sums[0] = 0.0;
-  for (Index i = 0; i < values.size(); ++i) sums[i + 1] = sums[i] + values[i];
-  return sums;
 }
 
 struct ChangePoints {
@@ -451,7 +438,7 @@ Result<EmgResponse> emg_response(const Matrix& rectified, double sample_time, co
 }
 
 bool is_emg(const Channel& channel) {
-  return channel.name.starts_with("emg_");
+  return channel.name == "emg" || channel.name.starts_with("emg_");
 }
 
 Result<EmgEstimate> emg_responses(std::span<const EmgRecording> recordings, double sample_time,

@@ -66,7 +66,7 @@ struct EmgRecording {
   std::vector<Onset> onsets;  ///< in samples of the recording
 };
 
-/// Whether a channel is EMG: its name begins with emg_.
+/// Whether a channel is EMG: its name is emg or begins with emg_.
 [[nodiscard]] bool is_emg(const Channel& channel);
 
 /// Responses of all channels emg_* that all recordings have, with their epochs pooled. One channel at a time is

@@ -255,6 +255,15 @@ TEST(EmgResponses, OfAnArtefactOrOfAClockThatIsEarlyAreNone) {
   EXPECT_EQ(early.findings.back().problem, EmgProblem::too_early);
 }
 
+TEST(EmgResponses, AreOfAChannelCalledEmgToo) {
+  Made made = make(1, 12);
+  made.recordings[0].channels.resize(1);
+  made.recordings[0].channels[0].name = "emg";
+  const auto found = emg_responses(made.sources, kT, {});
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_EQ(found->channels.at(0).name, "emg");
+}
+
 TEST(EmgResponses, KnowTheMusclesOfTheMvc) {
   EmgOptions options;
   options.mvc["emg_nosuch"] = 1e-3;

@@ -711,10 +711,10 @@ Result<StretchEstimate> stretch(std::span<const ExplorationTrial> trials, const 
         fmt::format("{} movement{} with constant velocity found", moves.size(), moves.size() == 1 ? "" : "s"),
         "record stretches at two constant speeds or more, several times each");
   }
-  const Vector& first = signals.front().position;
-  if (trials.front().motion == Motion::rotation && first.maxCoeff() - first.minCoeff() > 2.0 * std::numbers::pi) {
-    return bad_data(fmt::format("the position ranges from {:.4g} to {:.4g} rad, as no joint does", first.minCoeff(),
-                                first.maxCoeff()),
+  for (const Signal& one : signals) {
+    const double low = one.position.minCoeff(), high = one.position.maxCoeff();
+    if (trials.front().motion != Motion::rotation || high - low <= 2.0 * std::numbers::pi) continue;
+    return bad_data(fmt::format("the position ranges from {:.4g} to {:.4g} rad, as no joint does", low, high),
                     "if it is in degrees, state it: --channels x=NAME:deg");
   }
   found.inertia_found = found_inertia(moves, signals, options.inertia);

@@ -246,8 +246,7 @@ void extrapolate(const Onsets& used, int speeds, const Interval& range, double s
     muscle.shift.reset();
     muscle.threshold_note =
         "the onsets extrapolate to where the stretches begin, as those of a reaction at a constant time after the "
-        "start "
-        "do: it cannot be distinguished from a threshold";
+        "start do: it cannot be distinguished from a threshold";
     return;
   }
   const bool outside = muscle.threshold->value < range.first || muscle.threshold->value > range.second;
@@ -286,9 +285,7 @@ Result<std::vector<Power>> powers_of(const std::string& name, std::span<const Re
     const auto band = MBK_TRY(emg_band(raw, *how));
     Power power;
     power.sample_time = trials[k].sample_time;
-    power.sums.resize(band.size() + 1);
-    power.sums[0] = 0.0;
-    for (Index i = 0; i < band.size(); ++i) power.sums[i + 1] = power.sums[i] + band[i] * band[i];
+    power.sums = running_sums(band.cwiseAbs2());
     powers.push_back(std::move(power));
   }
   return powers;
