@@ -143,6 +143,25 @@ std::vector<Recording> motions_of(std::span<const Recording> recordings) {
   return motions;
 }
 
+/// Recordings on an even clock, and copies of those whose clock was not.
+struct EvenRecordings {
+  std::vector<preprocess::Reclocked> copies;
+  std::vector<const Recording*> all;
+};
+
+/// @fails  as reclocked
+Result<EvenRecordings> evenly_clocked(std::span<const Recording> recordings, const ExploreOptions& options) {
+  EvenRecordings even;
+  even.copies.reserve(recordings.size());  // `all` points into it
+  for (const Recording& recording : recordings) {
+    auto one = preprocess::reclocked(recording, recording::inspect(recording), options.resample);
+    if (!one) return tl::unexpected(one.error());
+    even.copies.push_back(std::move(*one));
+    even.all.push_back(even.copies.back().recording ? &*even.copies.back().recording : &recording);
+  }
+  return even;
+}
+
 /// EMG after the onsets of perturbations, with the epochs of all recordings pooled.
 /// @fails  usage: other signals are explored. data: the rates differ. As reclocked and explore::emg_responses.
 Result<void> add_emg(std::span<const Recording> recordings, std::span<const ExplorationTrial> trials,
@@ -151,8 +170,7 @@ Result<void> add_emg(std::span<const Recording> recordings, std::span<const Expl
   const double T = trials.front().sample_time;
   constexpr double kSameRate = 1e-6;
   const auto rest = std::max<Index>(std::llround(options.emg.background_s / T), 1);
-  std::vector<preprocess::Reclocked> even;
-  even.reserve(recordings.size());  // the sources below point into it
+  const auto even = MBK_TRY(evenly_clocked(recordings, options));
   std::vector<explore::EmgRecording> sources;
   bool by_reference = true;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
@@ -160,13 +178,10 @@ Result<void> add_emg(std::span<const Recording> recordings, std::span<const Expl
     if (!(std::abs(trial.sample_time / T - 1.0) < kSameRate)) {
       return bad_data("the recordings have different sample rates", "use --resample");
     }
-    auto one = preprocess::reclocked(recordings[k], recording::inspect(recordings[k]), options.resample);
-    if (!one) return tl::unexpected(one.error());
-    even.push_back(std::move(*one));
     by_reference = by_reference && trial.reference.size() > 0;
     auto onsets = explore::perturbation_onsets(trial, rest);
     for (explore::Onset& onset : onsets) onset.sample += std::llround(trial.from_s / T);
-    sources.push_back({even.back().recording ? &*even.back().recording : &recordings[k], std::move(onsets)});
+    sources.push_back({even.all[k], std::move(onsets)});
   }
   auto emg = explore::emg_responses(sources, T, options.emg);
   if (!emg) return tl::unexpected(emg.error().in("EMG"));
@@ -181,16 +196,8 @@ Result<void> add_emg(std::span<const Recording> recordings, std::span<const Expl
 Result<void> add_emg_of_stretches(std::span<const Recording> recordings, std::span<const ExplorationTrial> trials,
                                   const ExploreOptions& options, StretchEstimate& found) {
   if (options.signals) return {};
-  std::vector<preprocess::Reclocked> even;
-  even.reserve(recordings.size());  // the sources below point into it
-  std::vector<const Recording*> sources;
-  for (const Recording& recording : recordings) {
-    auto one = preprocess::reclocked(recording, recording::inspect(recording), options.resample);
-    if (!one) return tl::unexpected(one.error());
-    even.push_back(std::move(*one));
-    sources.push_back(even.back().recording ? &*even.back().recording : &recording);
-  }
-  return explore::add_stretch_muscles(sources, trials, found);
+  const auto even = MBK_TRY(evenly_clocked(recordings, options));
+  return explore::add_stretch_muscles(even.all, trials, found);
 }
 
 bool requested(const ExploreOptions& options, ExplorationPart part) {
