@@ -9,6 +9,7 @@
 
 #include "mbk/base/numeric/random.h"
 #include "mbk/model/perturbation/directions.h"
+#include "mbk/model/perturbation/pauses.h"
 
 namespace mbk::perturbation {
 namespace {
@@ -29,10 +30,7 @@ Result<void> check_ramps(const RampAndHold::Options& o) {
     return bad_usage(fmt::format("{} directions, {} times each, are more than {} ramps", o.directions, o.repetitions,
                                  RampAndHold::kMaxRamps));
   }
-  if (!(o.shortest_pause >= 0.0 && o.shortest_pause <= o.longest_pause && std::isfinite(o.longest_pause))) {
-    return bad_usage(fmt::format("pauses from {} s to {} s are not a range of non-negative times", o.shortest_pause,
-                                 o.longest_pause));
-  }
+  MBK_TRY(check_pauses(o.shortest_pause, o.longest_pause));
   if (!(o.quiet >= 0.0 && std::isfinite(o.quiet)))
     return bad_usage(fmt::format("quiet time {} s is negative", o.quiet));
   return {};

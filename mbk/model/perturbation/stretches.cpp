@@ -10,6 +10,7 @@
 #include "mbk/base/core/option_limits.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/model/perturbation/directions.h"
+#include "mbk/model/perturbation/pauses.h"
 
 namespace mbk::perturbation {
 namespace {
@@ -43,10 +44,7 @@ Result<void> check_stretches(const Stretches::Options& o) {
                     changing, std::abs(o.amplitude)),
         "lower the speed, or increase the acceleration or the amplitude");
   }
-  if (!(o.shortest_pause >= 0.0 && o.shortest_pause <= o.longest_pause && std::isfinite(o.longest_pause))) {
-    return bad_usage(fmt::format("pauses from {} s to {} s are not a range of non-negative times", o.shortest_pause,
-                                 o.longest_pause));
-  }
+  MBK_TRY(check_pauses(o.shortest_pause, o.longest_pause));
   return {};
 }
 

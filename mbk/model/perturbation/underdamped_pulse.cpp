@@ -8,6 +8,7 @@
 
 #include "mbk/base/numeric/random.h"
 #include "mbk/model/perturbation/directions.h"
+#include "mbk/model/perturbation/pauses.h"
 
 namespace mbk::perturbation {
 namespace {
@@ -27,10 +28,7 @@ Result<void> check(const PulseSchedule::Options& o) {
     return bad_usage(fmt::format("pulse durations from {} s to {} s are not a range of positive times",
                                  o.shortest_duration, o.longest_duration));
   }
-  if (!(o.shortest_pause >= 0.0 && o.shortest_pause <= o.longest_pause && std::isfinite(o.longest_pause))) {
-    return bad_usage(fmt::format("pauses from {} s to {} s are not a range of non-negative times", o.shortest_pause,
-                                 o.longest_pause));
-  }
+  MBK_TRY(check_pauses(o.shortest_pause, o.longest_pause));
   if (!(o.return_duration > 0.0 && o.return_duration <= o.shortest_pause)) {
     return bad_usage(fmt::format("the return takes {} s, which is not between 0 and the shortest pause {} s",
                                  o.return_duration, o.shortest_pause));
