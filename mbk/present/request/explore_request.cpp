@@ -1,12 +1,12 @@
 #include "mbk/present/request/explore_request.h"
 
-#include <charconv>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mbk/base/core/units.h"
 #include "mbk/files/recording/channel_table.h"
+#include "mbk/present/request/number_of.h"
 #include "mbk/present/request/signal_names.h"
 #include "mbk/present/request/stage_tables.h"
 
@@ -90,30 +90,22 @@ OptionTable<measurement::ExploreOptions> course_table() {
   return table;
 }
 
-/// A text that passed positive() or not_negative(), or an untested one.
-std::optional<double> emg_number(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 /// @fails  usage: a band that is not two numbers; a value of --mvc that is not MUSCLE=V.
 Result<void> set_emg(const ExploreRequest& request, explore::EmgOptions& emg) {
   if (!request.emg_band.empty()) {
     if (request.emg_band.size() != 2) return bad_usage("--emg-band needs two frequencies, such as 20,450");
-    emg.processing.low_hz = emg_number(request.emg_band[0]).value_or(0.0);
-    emg.processing.high_hz = emg_number(request.emg_band[1]).value_or(0.0);
+    emg.processing.low_hz = number_of(request.emg_band[0]).value_or(0.0);
+    emg.processing.high_hz = number_of(request.emg_band[1]).value_or(0.0);
   }
   if (!request.emg_windows.empty()) {
     emg.edges_s.clear();
     for (const std::string& text : request.emg_windows) {
-      emg.edges_s.push_back(emg_number(text).value_or(0.0) / kMilliseconds);
+      emg.edges_s.push_back(number_of(text).value_or(0.0) / kMilliseconds);
     }
   }
   for (const std::string& text : request.mvc) {
     const auto at = text.find('=');
-    const auto volts = at == std::string::npos ? std::nullopt : emg_number(text.substr(at + 1));
+    const auto volts = at == std::string::npos ? std::nullopt : number_of(text.substr(at + 1));
     if (!volts || !(*volts > 0.0)) {
       return bad_usage("--mvc: " + quoted(text) + " is not MUSCLE=V with a positive voltage",
                        "for example --mvc biceps=0.0012");

@@ -2,24 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <vector>
 
 #include "mbk/base/core/units.h"
 #include "mbk/files/contents/read_text.h"
+#include "mbk/present/request/number_of.h"
 #include "mbk/present/result/sensor_json.h"
 
 namespace mbk::request {
 namespace {
-
-std::optional<double> number_of(std::string_view text) {
-  double value = 0.0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 /// "auto:2", or one voltage for each axis: "0.06,0.28".   @returns  whether it is one of them
 bool read_zero(const std::string& text, calibration::SensorUse& use) {
