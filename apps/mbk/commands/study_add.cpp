@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "apps/mbk/commands/study_commands.h"
+#include "apps/mbk/commands/study_listing.h"
 #include "apps/mbk/options/study_options.h"
 #include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/terminal/progress.h"
@@ -31,9 +32,7 @@ struct AddArguments {
 
 std::string added_line(const AddedRecording& added) {
   const store::StoredRecording& r = added.recording;
-  return fmt::format("recording {}: participant {}, session {}, {}{}trial {}, {:.1f} s{}{}\n", r.number, r.participant,
-                     r.session, r.condition.empty() ? "" : r.condition + ", ",
-                     r.rater.empty() ? "" : "rater " + r.rater + ", ", r.trial, r.duration_s,
+  return fmt::format("{}, {:.1f} s{}{}\n", recording_words(r), r.duration_s,
                      added.there_before ? " (already stored)" : "",
                      r.excluded_why ? ", excluded: " + *r.excluded_why : "");
 }

@@ -86,9 +86,7 @@ std::string outcome_line(const store::Outcome& one) {
 
 std::string show_text(const store::ShownRecording& shown) {
   const store::StoredRecording& r = shown.recording;
-  std::string text = fmt::format("recording {}: participant {}, session {}, {}{}trial {}\n", r.number, r.participant,
-                                 r.session, r.condition.empty() ? "" : r.condition + ", ",
-                                 r.rater.empty() ? "" : "rater " + r.rater + ", ", r.trial);
+  std::string text = recording_words(r) + "\n";
   text += fmt::format("  sha256   {}\n", r.sha256);
   if (r.origin_sha256 != r.sha256) text += fmt::format("  made of  {}\n", r.origin_sha256);
   if (r.part > 0) text += fmt::format("  part     {} of its file\n", r.part);
@@ -195,6 +193,12 @@ void add_analysis_option(Command command, AnalysisArguments& arguments) {
   command.add_option("--analysis", arguments.analysis, "number of the analysis (default: that of the newest result)")
       .type_name("N")
       .check(whole_number(1, 999999999));
+}
+
+std::string recording_words(const store::StoredRecording& r) {
+  return fmt::format("recording {}: participant {}, session {}, {}{}trial {}", r.number, r.participant, r.session,
+                     r.condition.empty() ? "" : r.condition + ", ", r.rater.empty() ? "" : "rater " + r.rater + ", ",
+                     r.trial);
 }
 
 std::string study_head_text(const StudyList& list) {

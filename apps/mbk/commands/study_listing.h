@@ -37,6 +37,9 @@ void add_analysis_option(Command command, AnalysisArguments& arguments);
 [[nodiscard]] Result<store::StudyList> listed_study(const AnalysisArguments& arguments,
                                                     std::optional<store::Store>& study);
 
+/// "recording 3: participant 1, session 2, relaxed, rater A, trial 1"
+[[nodiscard]] std::string recording_words(const store::StoredRecording& recording);
+
 /// Title, how many recordings there are in which state, and the analyses.
 [[nodiscard]] std::string study_head_text(const store::StudyList& list);
 

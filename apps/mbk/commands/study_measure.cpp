@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "apps/mbk/commands/study_commands.h"
+#include "apps/mbk/commands/study_listing.h"
 #include "apps/mbk/options/engine_options.h"
 #include "apps/mbk/options/study_options.h"
 #include "apps/mbk/options/table_options.h"
@@ -31,17 +32,11 @@ using workflow::Tally;
 /// Results that are not usable: by recording, the first of their warnings.
 using NotUsable = std::map<store::Unit, std::string>;
 
-/// "recording 3: participant 1, session 2, trial 1"
-std::string name_of(const store::StoredRecording& r) {
-  return fmt::format("recording {}: participant {}, session {}, {}trial {}", r.number, r.participant, r.session,
-                     r.condition.empty() ? "" : r.condition + ", ", r.trial);
-}
-
-/// Units under these names; none if the study cannot be read.
+/// Units under the words of their recordings; none if the study cannot be read.
 std::map<store::Unit, std::string> names_of(const store::Store& study) {
   std::map<store::Unit, std::string> names;
   if (const auto recordings = study.recordings()) {
-    for (const store::StoredRecording& r : *recordings) names[{r.sha256, r.part, ""}] = name_of(r);
+    for (const store::StoredRecording& r : *recordings) names[{r.sha256, r.part, ""}] = recording_words(r);
   }
   return names;
 }
@@ -67,7 +62,7 @@ Result<std::string> lines_of(const store::Store& study, const NotUsable& not_usa
   for (const store::StoredRecording& r : recordings) {
     const auto found = not_usable.find({r.sha256, r.part, ""});
     if (found == not_usable.end()) continue;
-    text += fmt::format("  {}: not usable: {}\n", name_of(r), found->second);
+    text += fmt::format("  {}: not usable: {}\n", recording_words(r), found->second);
   }
   return text;
 }
