@@ -287,14 +287,8 @@ std::vector<FacetTerm> identifiable(const RatingDesign& design, const std::vecto
   for (Index k = 0; k < H.rows(); ++k) {
     double left = H(k, k);
     if (!places.empty()) {
-      Matrix among(std::ssize(places), std::ssize(places));
-      Vector with(std::ssize(places));
-      for (Index i = 0; i < with.size(); ++i) {
-        with[i] = H(places[static_cast<std::size_t>(i)], k);
-        for (Index j = 0; j < with.size(); ++j) {
-          among(i, j) = H(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
-        }
-      }
+      const Matrix among = H(places, places);
+      const Vector with = H(places, k);
       left -= with.dot(numeric::Cholesky(among).solve(with));
     }
     if (!(left > kDependent * H(k, k))) continue;
