@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How to cite mbk: one version and one date everywhere, and CITATION.cff, codemeta.json, paper.md and `mbk --cite` agree.
+"""How to cite mbk: one version and one date everywhere; CITATION.cff, codemeta.json, paper and `mbk --cite` agree.
 
 Version and date are set in CMakeLists.txt. For a release, change them there and in the files that this test compares.
 """
@@ -121,6 +121,63 @@ class Citation(unittest.TestCase):
         self.assertEqual(entries["Dyck2013"], {
             "kind": "mastersthesis", "title": thesis["title"], "school": thesis["institution"]["name"], "year": thesis["year"],
             "author": ", ".join(thesis["authors"][0][part] for part in ("family-names", "given-names"))})
+
+
+class Paper(unittest.TestCase):
+    """paper/paper.md in the form of the Journal of Open Source Software."""
+
+    text = (ROOT / "paper/paper.md").read_text(encoding="utf-8")
+
+    @classmethod
+    def setUpClass(cls):
+        front, cls.body = re.fullmatch(r"---\n(.*?)\n---\n(.*)", cls.text, re.S).groups()
+        cls.front = yaml.load(front, yaml.BaseLoader)
+        cls.entries = bibtex_entries((ROOT / "paper/paper.bib").read_text(encoding="utf-8"))
+
+    def test_the_front_matter_agrees_with_the_citation(self):
+        cff = citation()
+        self.assertEqual(self.front["title"], cff["title"])
+        self.assertEqual([one["name"] for one in self.front["authors"]], [one["name"] for one in cff["authors"]])
+        self.assertEqual(set(cff["keywords"]) - set(self.front["tags"]), set())
+        indices = {one["index"] for one in self.front["affiliations"]}
+        self.assertTrue(all(one["affiliation"] in indices for one in self.front["authors"]))
+        self.assertTrue((ROOT / "paper" / self.front["bibliography"]).is_file())
+        day = datetime.datetime.strptime(self.front["date"], "%d %B %Y").date()
+        self.assertEqual(day.isoformat(), RELEASED)
+
+    def test_it_has_the_sections_of_the_journal(self):
+        headings = re.findall(r"^# (.*)$", self.body, re.M)
+        self.assertEqual(headings, ["Summary", "Statement of need", "State of the field", "Software design",
+                                    "Examples and validation", "Acknowledgements", "References"])
+
+    def test_it_is_as_long_as_the_journal_asks(self):
+        words = len(self.body.split())
+        self.assertTrue(750 <= words <= 1750, f"{words} words")
+
+    def test_each_citation_is_in_the_bibliography_and_each_entry_is_cited(self):
+        cited = set(re.findall(r"(?<![\w`])@([A-Za-z]+\d{4}\w?)", self.body))
+        self.assertEqual(cited, set(self.entries))
+
+    def test_each_entry_has_what_its_kind_needs(self):
+        needed = {"article": "journal", "book": "publisher", "inproceedings": "booktitle", "mastersthesis": "school"}
+        for key, entry in self.entries.items():
+            with self.subTest(key):
+                self.assertLessEqual({"author", "title", "year", needed[entry["kind"]]}, set(entry))
+                self.assertTrue(key.endswith(entry["year"]))
+                self.assertRegex(entry.get("doi", "10.1/x"), r"^10\.\d+/\S+$")
+
+    def test_its_numbers_are_those_of_the_documents(self):
+        for page, numbers in {
+                "docs/guide/reproduce.md": ["74 exhibits", "401 printed numbers"],
+                "docs/theory/identification.md": ["93.55 to 94.10 %", "93.90 to 95.10 %", "93.95 to 94.55 %"],
+                "docs/guide/limits.md": ["5 to 11 % too large"],
+                "docs/guide/your_files.md": ["104.0 ± 6.9 N·m/rad", "86 %", "94.94 ± 0.53 kg", "95.11 kg"],
+                "CHANGELOG.md": ["About 50 warnings"], "examples/README.md": ["Eleven"]}.items():
+            text = (ROOT / page).read_text(encoding="utf-8")
+            for number in numbers:
+                with self.subTest(page=page, number=number):
+                    self.assertIn(number, text)
+                    self.assertIn(number.split()[0], self.body)
 
 
 def bibtex_entries(text):
