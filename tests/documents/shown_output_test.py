@@ -24,6 +24,8 @@ BEFORE = {
     "README.md": "mbk simulate relaxed_sinusoidal --quiet --out trial.csv",
     "docs/guide/first_measurement.md": "mkdir -p build/demonstration && mbk simulate relaxed_sinusoidal --quiet "
                                        "--out build/demonstration/demonstration.mat",
+    "docs/guide/reading_a_result.md": "mbk simulate relaxed_sinusoidal --quiet --out relaxed.h5 && "
+                                      "mbk simulate rigid_sinusoidal_6N --quiet --out rigid.h5",
     "docs/guide/simulate.md": "mkdir -p build/trials",
 }
 
@@ -38,12 +40,17 @@ def blocks(page):
     text = (ROOT / page).read_text(encoding="utf-8")
     for block in re.finditer(r"^```\w*\n(\$ .*?)^```", text, re.S | re.M):
         line = text.count("\n", 0, block.start(1)) + 1
-        for example in re.split(r"^\$ ", block[1], flags=re.M)[1:]:
-            lines, command = example.splitlines(), ""
-            while not command or command.endswith("\\\n") or command.count("'") % 2:
-                command += lines.pop(0) + "\n"
-            yield line, command.strip(), "\n".join(lines).rstrip()
-            line += example.count("\n")
+        for command, shown in commands_of(block[1]):
+            yield line + block[1][:block[1].index(f"$ {command}")].count("\n"), command, shown
+
+
+def commands_of(block):
+    """(command, shown output) of a block that begins with `$ `."""
+    for example in re.split(r"^\$ ", block, flags=re.M)[1:]:
+        lines, command = example.splitlines(), ""
+        while not command or command.endswith("\\\n") or command.count("'") % 2:
+            command += lines.pop(0) + "\n"
+        yield command.strip(), "\n".join(lines).rstrip()
 
 
 def pattern(shown):

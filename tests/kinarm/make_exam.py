@@ -129,6 +129,8 @@ def add_arm(trial, arm, robot, impedance, random, options):
         add(f"M{link + 1}TorCMD", "Nm", "commanded torque", torque[:, link])
     if options["force_sensor"]:
         sensed = options["force_sign"] * force
+        if options["noise"]:
+            sensed = sensed + random.normal(0, options["noise"], sensed.shape)
         lift, lever = 0.4 * np.sin(2 * np.pi * 0.2 * np.arange(frames) / rate), 0.03
         for axis, values in zip("XYZ", (sensed[:, 0], sensed[:, 1], lift)):
             add(f"FS_Force{axis}", "N", "force sensor", values)
@@ -456,20 +458,20 @@ def expected_of(trials, robots, impedances, parts, options):
 
 
 def make_exam(path, arm="right", robot="endpoint", trials=3, frames=1000, seed=1, rate=1000.0, split=None, other="still",
-              split_numbers="own", version=3, tdk="3.5.0", force_sign=1, force_sensor=None, two_rows=True):
+              split_numbers="own", version=3, tdk="3.5.0", force_sign=1, force_sensor=None, two_rows=True, noise=0.0):
     """Writes the exam and its .expected.npz, and returns what is in the latter. The kind follows the name's ending.
 
     split: {trial from 1: parts}; other: the other arm holds still or is absent; split_numbers: parts have TRIAL_NUMs of
     their own, or all the "same"; version: of the binary files; tdk: TASK_PROGRAM_BUILD_TDK, None for none;
     force_sign: −1 shows the force of the robot on the hand; force_sensor: None for an End-Point robot only; two_rows:
-    EVENTS:TIMES of C3D files are 2×n.
+    EVENTS:TIMES of C3D files are 2×n; noise: standard deviation of the measured force [N].
     """
     path = pathlib.Path(path)
     old = tdk is None or tuple(int(one) for one in tdk.split(".")) < (3, 4, 2)
     options = {"arm": arm, "trials": trials, "frames": frames, "seed": seed, "rate": float(rate), "split": dict(split or {}),
                "other": other, "split_numbers": split_numbers, "version": version, "tdk": tdk, "force_sign": force_sign,
                "force_sensor": robot == "endpoint" if force_sensor is None else force_sensor, "two_rows": two_rows,
-               "right_torque_x": not old}
+               "right_torque_x": not old, "noise": noise}
     if arm == "right" and other == "absent":
         robots = {"Right": Robot(robot, "Right")}
     elif other == "absent":
@@ -514,6 +516,7 @@ def main():
     parser.add_argument("--tdk", default="3.5.0", help="TASK_PROGRAM_BUILD_TDK; none: it is absent")
     parser.add_argument("--force-sign", type=int, choices=[1, -1], default=1, help="1: the hand's force on the robot")
     parser.add_argument("--force-sensor", choices=["yes", "no"], help="usually of an End-Point robot only")
+    parser.add_argument("--noise", type=float, default=0.0, help="standard deviation of the measured force in N")
     parser.add_argument("--one-row", action="store_true", help="EVENTS:TIMES of C3D files are n numbers, not 2 x n")
     arguments = parser.parse_args()
     split = dict(tuple(map(int, one.split(":"))) for one in arguments.split)
@@ -522,7 +525,7 @@ def main():
               split_numbers=arguments.split_numbers, version=arguments.version,
               tdk=None if arguments.tdk == "none" else arguments.tdk, force_sign=arguments.force_sign,
               force_sensor=None if arguments.force_sensor is None else arguments.force_sensor == "yes",
-              two_rows=not arguments.one_row)
+              two_rows=not arguments.one_row, noise=arguments.noise)
 
 
 if __name__ == "__main__":
