@@ -23,6 +23,7 @@ import pygments
 import pygments.formatters
 import pygments.lexers
 import python_pages
+import recording
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FIXED = {"README.md": "index", "CHANGELOG.md": "changelog", "CONTRIBUTING.md": "contributing",
@@ -280,7 +281,10 @@ class Site:
                 body = "<ul>" + "".join(f"<li>{self.from_source(name, one, path)}</li>" for one in inside) + "</ul>"
             else:
                 language = LANGUAGES.get(file.suffix, "bash" if path.parts[0] == "tools" else "text")
-                body = pygments.highlight(file.read_text(), pygments.lexers.get_lexer_by_name(language), formatter)
+                try:
+                    body = pygments.highlight(file.read_text(), pygments.lexers.get_lexer_by_name(language), formatter)
+                except UnicodeDecodeError:
+                    body = f"<p>{file.stat().st_size} bytes that are not text</p>"
             page = html_folder / name
             page.parent.mkdir(parents=True, exist_ok=True)
             page.write_text(SOURCE_PAGE.format(title=html.escape(path.as_posix()), body=body,
@@ -482,6 +486,8 @@ def main():
         site.add(pathlib.Path(name))
     site.add_examples()
     site.add_commands(mbk)
+    with_player = (out.parent / "static/asciinema-player.min.js").exists()
+    site.pages["index"] = site.pages["index"].replace("<!-- the first two commands -->\n", recording.block(mbk, with_player))
     build = pathlib.Path(mbk).resolve().parents[1]
     site.pages.update(python_pages.pages(build / "python/mbk"))
     site.pages.update(document_pages.pages(build / "schemas"))

@@ -6,6 +6,7 @@ skipped rather than run without the proof.
 """
 
 import functools
+import json
 import os
 import pathlib
 import re
@@ -83,6 +84,25 @@ class Site(unittest.TestCase):
         self.assertGreater(len(options), 30)
         for option in options:
             self.assertIn(option, shown)
+
+    def test_the_recording_shows_the_first_commands_as_text_and_to_play(self):
+        tree = lxml.html.parse(str(self.html / "index.html"), lxml.html.HTMLParser(encoding="utf-8"))
+        (shown,) = tree.xpath("//details[@class='recorded']//pre")
+        for part in ("$ mbk simulate relaxed_sinusoidal --out trial.h5\n", "$ mbk measure trial.h5\n", "\n  stiffness K  46.0 ± 5.0 ",
+                     "\n               yy\n"):  # which a terminal of 80 columns has no room for beside the others
+            self.assertIn(part, shown.text_content())
+        casts = tree.xpath("//script[@type='application/x-asciicast']")
+        has_player = (self.html / "_static/asciinema-player.min.js").is_file()
+        self.assertEqual(len(casts), has_player)
+        if not casts:
+            return
+        header, *events = map(json.loads, casts[0].text.strip().splitlines())
+        self.assertEqual((header["version"], header["width"]), (2, 80))
+        times = [time for time, _, _ in events]
+        self.assertEqual(times, sorted(times))
+        played = "".join(output for _, _, output in events).replace("\r\n", "\n")
+        self.assertEqual(played.removesuffix("$ ").strip(), shown.text_content().strip())
+        self.assertTrue((self.html / "_static/asciinema-player.LICENSE.txt").is_file())
 
     def test_navigation_has_the_order_of_the_readmes(self):
         tree = lxml.html.parse(str(self.html / "theory/index.html"))

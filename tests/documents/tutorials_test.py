@@ -2,7 +2,7 @@
 """Every block of "First ten minutes" in the guide is run in an empty folder, and prints what the page shows.
 
 `$ COMMAND` runs in a shell, with its output below it; a block `python` or `matlab` (in Octave) shows its output in the block
-`text` that follows; a block `report` shows lines of report.html as a browser shows them. Code of one language runs in one
+`text` that follows; on the page for clinicians, `text` shows lines of report.html as a browser shows them. Code of one language runs in one
 process, up to the next block of another. The clone of the reader is ~/mbk.
 """
 
@@ -47,7 +47,9 @@ def processes(page):
     """(language, [(code, shown output or None)]), in order; what one process runs. Fails at a block that nothing runs."""
     runs = []
     for language, content in blocks(page):
-        if language == "text":
+        if language == "text" and page == "clinician":
+            runs.append(("report", [("the report", content)]))
+        elif language == "text":
             if not runs or runs[-1][0] not in ("python", "matlab") or runs[-1][1][-1][1] is not None:
                 raise AssertionError(f"{page}: no code above this output:\n{content}")
             runs[-1][1][-1] = (runs[-1][1][-1][0], content.rstrip())
@@ -55,8 +57,6 @@ def processes(page):
             if not runs or runs[-1][0] != language:
                 runs.append((language, []))
             runs[-1][1].append((content, None))
-        elif language == "report":
-            runs.append((language, [("the report", content)]))
         elif language == "" and content.startswith("$ "):
             runs.append((language, list(commands_of(content))))
         else:

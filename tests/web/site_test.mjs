@@ -66,6 +66,20 @@ test("the button's choice of dark holds on pages that other programs made", asyn
   await close();
 });
 
+test("the recording plays by keyboard, and is text for those who asked for less motion", async () => {
+  const { page, said, close } = await open(address("index"));
+  const terminal = page.locator(".terminal .ap-wrapper");
+  await terminal.focus();
+  await page.keyboard.press("Space");
+  await eventually(async () => assert.match(await page.locator(".terminal").innerText(), /mbk measure/));
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.reload();
+  assert.equal(await terminal.count(), 0);
+  assert.ok(await page.locator(".recorded pre").isVisible());
+  assert.deepEqual(said, []);
+  await close();
+});
+
 test("a search from a file finds the guide's page first", async () => {
   const { page, said, close } = await open(address("guide/run"));
   await page.fill(".sidebar-search", "clinicians");
