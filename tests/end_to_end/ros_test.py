@@ -56,6 +56,8 @@ class Ros(Case):
         want = self.model(log.path)
         for symbol in ("M", "B", "K"):
             self.assert_relative(got[symbol], want[symbol], 0.02)
+        ran = self.fine("measure", "--json", "--clock", "/pose", "--channels", SENSOR_OPPOSITE, path)
+        self.assertNotIn("other-column", [one["code"] for one in ran.json["warnings"]])  # ".force.x" is no position
 
     def test_a_force_in_the_frame_of_the_tool_is_not_taken_as_one_in_that_of_the_base(self):
         path = self.two_topics(make_log("sinusoidal", "--seed", "3"), turned=True, frame="tool0")

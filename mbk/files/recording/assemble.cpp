@@ -1410,11 +1410,13 @@ class Assembler {
     return {std::string(signal.alias()), signal.entry, std::string(unit), called_otherwise(signal), signal.joint};
   }
 
-  /// The name of this line in the file, or from its row in a logs matrix; nothing if it is not a channel.
+  /// What the reader or the name of this line in the file says, or its row in a logs matrix; nothing if it is not a
+  /// channel. ".force.x" of a ROS topic is no position, although it ends in x.
   static std::vector<const ChannelKind*> kinds_in_file(const Signal& signal) {
     std::vector<const ChannelKind*> kinds;
     if (!is_matrix(*signal.line.array)) {
-      const std::string& name = signal.line.array->name;
+      const std::string &name = signal.line.array->name, &means = signal.line.array->means;
+      if (!means.empty()) return parse_column_name(std::string_view(means).substr(means.front() == '-' ? 1 : 0)).kinds;
       kinds = parse_column_name(name).kinds;
       return kinds.empty() ? parse_column_name(leaf(name)).kinds : kinds;
     }
