@@ -69,6 +69,11 @@ class Width(Case):
             self.assertEqual(collections.Counter(plain.split()) - collections.Counter(text.split()), {})
             self.assert_lines_fit(text, columns)
 
+    def test_a_line_that_follows_a_broken_one_stays_a_line(self):
+        _, text = at_terminal("measure", "--quiet", make_log().path)
+        self.assertIn("  Neither statement guarantees that a robot coupled to this person is stable.",
+                      ESCAPE.sub("", text).splitlines())
+
     def test_tables_come_in_parts_with_the_names_of_their_rows(self):
         log = make_log().path
         plain = self.fine("measure", "--quiet", log).out

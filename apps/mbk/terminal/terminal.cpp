@@ -44,11 +44,13 @@ std::size_t text_begin(std::string_view line, std::size_t columns) {
 }
 
 /// Whether a line continues the previous one, of which `rest` did not fit: it has the same indentation, and the
-/// previous line did not end a sentence.
-bool continues(std::string_view rest, std::size_t hanging, std::string_view line) {
+/// previous line neither ended a sentence nor had room for its first word.
+bool continues(std::string_view rest, std::size_t hanging, std::string_view previous, std::string_view line) {
   constexpr std::string_view kEnds = ".:)";
-  return !rest.empty() && kEnds.find(rest.back()) == std::string_view::npos && indent_of(line) == hanging &&
-         hanging < line.size() && line.find("  ", hanging) == std::string_view::npos && !line.ends_with(':');
+  const std::string_view word = line.substr(indent_of(line), line.find(' ', indent_of(line)) - indent_of(line));
+  return report::columns(previous) + 1 + report::columns(word) > report::kLineColumns && !rest.empty() &&
+         kEnds.find(rest.back()) == std::string_view::npos && indent_of(line) == hanging && hanging < line.size() &&
+         line.find("  ", hanging) == std::string_view::npos && !line.ends_with(':');
 }
 
 bool starts_with_any(std::string_view text, std::initializer_list<std::string_view> words) {
@@ -122,7 +124,7 @@ std::string fitted(std::string_view text, std::size_t columns) {
     fit = std::max(fit, k + table.lines);
     const std::string_view given = lines[k];
     std::string line(given);
-    if (continues(rest, hanging, given)) {
+    if (continues(rest, hanging, k > 0 ? lines[k - 1] : "", given)) {
       line = std::string(hanging, ' ') + rest + " " + std::string(given.substr(hanging));
       rest.clear();
     } else {
