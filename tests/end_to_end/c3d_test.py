@@ -168,6 +168,22 @@ class Outside(Case):
         codes = {warning["code"] for warning in result["warnings"]}
         self.assertIn("damping-not-positive", codes)
 
+    def test_the_emg_of_that_knee_explains_its_torque(self):
+        path = data_folder("c3d") / "Sample35_isokinetic_EMG_angle_torque.c3d"
+        asked = ("explore", "--axes", "1", "--only", "reflex", "--json", path,
+                 "--channels", "x=Angle:deg,F=Torque:N.m,emg_medialis=1:uV,emg_lateralis=2:uV")
+        alone, found = (self.fine(*asked, *more).json["parallel_cascade"] for more in ((), ("--muscles", "medialis,lateralis")))
+        self.assertNotIn("emg", alone)
+        self.assertEqual(alone["shares"], found["shares"])
+        emg = found["emg"]
+        self.assertTrue(emg["explains"], emg["why"])
+        self.assertGreater(emg["shares"][0]["intrinsic_and_emg"]["VAF"], found["shares"][0]["intrinsic_alone"]["VAF"] + 3)
+        slow = emg["coherence"][0]
+        self.assertGreater(slow["motion_and_emg"][0], slow["motion"][0] + 0.1)
+        medialis = emg["muscles"][0]
+        self.assertEqual((medialis["channel"], medialis["unit"]), ("emg_medialis", "mean"))
+        self.assertLess(medialis["gain"][0]["interval95"][1], 0)  # the quadriceps extends: its torque opposes flexion
+
 
 if __name__ == "__main__":
     main()

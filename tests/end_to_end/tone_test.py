@@ -35,6 +35,33 @@ class Tone(Case):
             self.assertIsNone(other.get("latency"))
             self.assertTrue(all(window["response"] == "none" for window in other["windows"]))
 
+    def test_stiffness_follows_the_co_contraction_of_two_muscles(self):
+        random.seed(6)
+        table = self.folder / "holding.csv"
+        lines, level, states = ["time_s,angle_rad,torque_Nm,emg_biceps (mV),emg_triceps (mV)"], 0.0, [0.0] * 4
+        for k in range(40 * 1000):
+            if k % 60 == 0:
+                level = random.choice((-1, 1)) * 0.1
+            states = [state + 0.03 * ((states[j - 1] if j else level) - state) for j, state in enumerate(states)]
+            angle = states[3]
+            activity = 0.5 - 0.4 * math.cos(2 * math.pi * k / 20000)
+            torque = -(10 + 40 * activity) * angle + random.gauss(0, 0.02)
+            lines.append(f"{k / 1000:.3f},{angle:.7f},{torque:.5f},{random.gauss(0, 0.2 * activity):.5f},"
+                         f"{random.gauss(0, 0.3 * activity):.5f}")
+        table.write_text("\n".join(lines) + "\n")
+        asked = ("explore", table, "--axes", 1, "--channels", "x=angle_rad,F=torque_Nm", "--only", "time-course", "--json")
+        course = self.fine(*asked, "--schedule", "co-contraction", "--muscles", "biceps,triceps").json["time_course"]
+        self.assertEqual(course["verdict"], "changes")
+        self.assertEqual((course["variable"], course["unit"]), ("co-contraction of emg_biceps and emg_triceps", "mean"))
+        for at, stiffness in zip(course["at"], course["K"]["value"][0]):
+            if 0.4 < at < 1.6:  # at the ends the noise of the envelopes counts
+                self.assertLess(abs(stiffness - (10 + 40 * 0.5 * at)), 2.5, at)
+        one = self.fine(*asked, "--schedule", "emg_biceps").json["time_course"]
+        self.assertEqual(one["variable"], "emg_biceps")
+        for muscles in ((), ("--muscles", "biceps"), ("--muscles", "biceps,triceps", "--mvc", "biceps=0.001")):
+            self.refused(WRONG_USAGE, *asked, "--schedule", "co-contraction", *muscles)
+        self.refused(BAD_DATA, *asked, "--schedule", "co-contraction", "--muscles", "biceps,deltoid")
+
     def test_emg_needs_no_force_and_is_read_from_any_table(self):
         random.seed(4)
         table = self.folder / "emg.csv"
@@ -56,6 +83,11 @@ class Tone(Case):
         for channel in emg["channels"]:
             self.assertLess(abs(channel["background"] / (0.8 * 20e-6 * math.sqrt(0.43)) - 1), 0.1)  # E|x| = 0.8 σ; 430 of 1000 Hz
         self.assertIsNone(triceps["directions"][0].get("latency"))
+        self.assertEqual([channel["unit"] for channel in emg["channels"]], ["V", "V"])
+        bare = self.folder / "bare.csv"
+        bare.write_text(table.read_text().replace("EMG biceps (mV)", "EMG biceps"))
+        told = self.fine("explore", bare, "--only", "emg", "--axes", 1, "--channels", "x=angle_deg:deg").out
+        self.assertRegex(told, r"emg_biceps: background 0\.010\d* \(the recording states no unit\)")
         info = self.fine("info", table, "--axes", 1, "--channels", "x=angle_deg:deg")
         self.assertIn("emg_biceps", info.out)
         measured = run("identify", self.recorded("elbow_perturbed"))
