@@ -23,7 +23,7 @@ constexpr Index kRowsPerEmgLag = 10;
 constexpr double kChanceOfEmg = 0.001;
 constexpr double kCoherenceSegment = 2.0;                       ///< [s]
 constexpr std::array kBandEdges = {0.5, 2.0, 5.0, 10.0, 20.0};  ///< [Hz]
-constexpr std::size_t kFewestSegmentsPerInput = 3;              ///< for a share that means something
+constexpr std::size_t kMinSegmentsPerInput = 3;                 ///< for a share that means something
 
 Matrix beside(const Matrix& a, const Matrix& b) {
   Matrix both(std::max(a.rows(), b.rows()), a.cols() + b.cols());
@@ -174,7 +174,7 @@ class EmgFit {
     const Index segment = 2 * static_cast<Index>(std::llround(0.5 * kCoherenceSegment / s_.sample_time));
     const auto spectra = dsp::cross_spectra(pieces, Hertz(1.0 / s_.sample_time), segment);
     const auto inputs = static_cast<double>(n + m);
-    if (!spectra || spectra->independent_segments < static_cast<double>(kFewestSegmentsPerInput) * inputs) return;
+    if (!spectra || spectra->independent_segments < static_cast<double>(kMinSegmentsPerInput) * inputs) return;
     dsp::CrossSpectra of_motion = *spectra;
     std::vector<Index> kept;
     for (Index k = 0; k < n; ++k) kept.push_back(k);

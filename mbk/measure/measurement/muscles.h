@@ -23,7 +23,7 @@ inline constexpr const char* kCoContraction = "co-contraction";
 [[nodiscard]] Result<void> add_muscles(const Recording& recording, const std::vector<std::string>& muscles,
                                        const EmgProcessing& processing, ExplorationTrial& trial);
 
-/// Divides the EMG of all trials by that of maximal contraction, or by its mean over the trials where it is not known;
+/// Divides the EMG of all trials by the EMG of maximal contraction, or by its mean over the trials where none is known;
 /// where the schedule is a muscle, its envelope becomes the schedule, where it is the co-contraction of two, the lesser
 /// of both envelopes at each instant (Thoroughman & Shadmehr 1999, J Neurosci 19:8573).
 /// @param mvc  by channel [V]
