@@ -109,7 +109,7 @@ function(mbk_install)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/mbk COMPONENT program)
 
   # The folders keep their places beside each other, so that the links between the documents hold.
-  install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright
+  install(FILES README.md LICENSE CITATION.cff CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright
           DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
   install(DIRECTORY docs examples bridge DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
           PATTERN docs/site EXCLUDE  # what builds the site out of them

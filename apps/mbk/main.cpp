@@ -15,6 +15,7 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/output.h"
+#include "apps/mbk/terminal/citation.h"
 #include "apps/mbk/terminal/command.h"
 #include "apps/mbk/terminal/command_list.h"
 #include "apps/mbk/terminal/help.h"
@@ -93,6 +94,7 @@ int run(int argc, char** argv) {
   const mbk::app::Command app = parser.command();
   app.add_text_flag(
       "--version", [] { return fmt::format("mbk {}", mbk::version()); }, "Print the version and exit");
+  app.add_text_flag("--cite", mbk::app::bibtex, "Print BibTeX entries for mbk and the thesis behind it, and exit");
   app.require_subcommand();
   mbk::app::add_help(app);
 

@@ -26,6 +26,7 @@ import python_pages
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FIXED = {"README.md": "index", "CHANGELOG.md": "changelog", "CONTRIBUTING.md": "contributing",
+         "CODE_OF_CONDUCT.md": "conduct", "SECURITY.md": "security",
          "THIRD_PARTY_NOTICES.md": "notices", "bench/README.md": "bench", "fuzz/README.md": "fuzz",
          "bridge/README.md": "bridge"}
 LANGUAGES = {".cpp": "cpp", ".h": "cpp", ".c": "c", ".py": "python", ".toml": "toml", ".urdf": "xml", ".sh": "bash",
@@ -485,7 +486,7 @@ def main():
     site.pages.update(python_pages.pages(build / "python/mbk"))
     site.pages.update(document_pages.pages(build / "schemas"))
     site.add_library()
-    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY_NOTICES.md", "bench/README.md", "fuzz/README.md",
+    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "SECURITY.md", "THIRD_PARTY_NOTICES.md", "bench/README.md", "fuzz/README.md",
                  "bridge/README.md"):
         site.add(pathlib.Path(name))
     site.write()

@@ -55,7 +55,7 @@ Actions add_commands(std::string_view first, Command app, const std::string& typ
   const bool one = first != "completion" && first != "manual" &&
                    std::ranges::any_of(all, [&](const auto& command) { return command.first == first; });
   Actions made;
-  if (first == "--version") return made;
+  if (first == "--version" || first == "--cite") return made;
   for (const auto& [name, add] : all) {
     if (!one || name == first) made.emplace_back(name, add(app));
   }

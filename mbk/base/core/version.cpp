@@ -6,4 +6,8 @@ std::string_view version() {
   return MBK_VERSION;
 }
 
+std::string_view release_date() {
+  return MBK_RELEASE_DATE;
+}
+
 }  // namespace mbk

@@ -7,4 +7,7 @@ namespace mbk {
 /// "0.1.0"
 [[nodiscard]] std::string_view version();
 
+/// Day of this version's release: "2026-11-29".
+[[nodiscard]] std::string_view release_date();
+
 }  // namespace mbk
