@@ -344,10 +344,10 @@ Result<std::string> encode_c3d(const Recording& recording) {
   bytes += {1, 0x50, static_cast<char>(blocks), static_cast<char>(C3dProcessor::intel)};
   bytes += parameters(data_block);
   bytes.resize((data_block - 1) * kC3dBlock);
-  bytes.reserve(bytes.size() + kC3dBlock +
+  bytes.reserve(bytes.size() +
                 4 * static_cast<std::size_t>(recording.samples()) * (recording.channels.size() + 4 * points));
+  // No padding behind the data: some programs, which read POINT:FRAMES as a signed word, read to the end of the file.
   append_data(bytes, hand, in_order(recording.channels), recording.samples());
-  bytes.resize((bytes.size() + kC3dBlock - 1) / kC3dBlock * kC3dBlock);
   return bytes;
 }
 
