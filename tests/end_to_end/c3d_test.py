@@ -298,7 +298,7 @@ class Written(Case):
                               ({name: values[:1] for name, values in good.items()}, ["sample", ".h5"])):
             self.refused(BAD_DATA, "convert", self.csv(columns), target, says=says)
         uneven = self.file("in.csv", "time_s,position_m,reaction_N\n0,1,1\n0.1,2,2\n0.25,3,3\n0.3,4,4\n")
-        self.refused(BAD_DATA, "convert", uneven, target, says=["even clock", ".h5", "--rate"])
+        self.refused(BAD_DATA, "convert", uneven, target, says=["even clock", ".h5"])
         unknown = self.file("in.csv", "clock,gaze\n0,1\n1,2\n")
         self.refused(BAD_DATA, "convert", unknown, target, says=["--channels", ".h5"])
         self.assertEqual(self.names(), ["in.csv"])

@@ -136,8 +136,7 @@ Result<C3dClock> c3d_clock(const Recording& recording) {
     if (clock.rate_hz > 0.0 && std::isfinite(clock.rate_hz) && off * clock.rate_hz <= kUnevenInC3d) continue;
     return bad_data(
         fmt::format("C3D stores no times, only a sample rate, but sample {} is not on an even clock", k + 1),
-        "write .h5, .mat or .csv, which keep each time; if the samples are even and only the times rounded, pass "
-        "--rate HZ");
+        "write .h5, .mat or .csv, which keep each time");
   }
   return clock;
 }

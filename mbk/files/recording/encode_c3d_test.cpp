@@ -147,7 +147,7 @@ TEST(EncodeC3d, RefusesAClockWithoutARate) {
   const Recording even = example();
   Recording recording = even;
   recording.time[100] += 0.02e-3;
-  EXPECT_THAT(refusal(recording), AllOf(HasSubstr("sample 101"), HasSubstr(".h5"), HasSubstr("--rate")));
+  EXPECT_THAT(refusal(recording), AllOf(HasSubstr("sample 101"), HasSubstr(".h5")));
   recording.time[100] -= 0.015e-3;
   EXPECT_THAT(lost_in(recording, Format::c3d), ElementsAre(AllOf(HasSubstr("times"), HasSubstr("5e-06 s"))));
   expect_same(written_and_read(recording), even);
