@@ -285,7 +285,7 @@ class Recording:
         return xarray.Dataset(variables, coords={"time": ("time", self.time, {"units": "s"})}, attrs=self.metadata)
 
     def save(self, file: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Writes the recording to a file. The extension selects the format: .h5, .mat or .csv."""
+        """Writes the recording to a file. The extension selects the format: .h5, .mat, .csv or .c3d."""
         import mbk
 
         mbk.convert(self, file, overwrite=overwrite)
