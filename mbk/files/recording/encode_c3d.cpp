@@ -180,7 +180,7 @@ Result<void> check_texts(const Recording& recording, const std::map<std::string,
 
 /// @fails  data: a number beyond those of 32 bits
 Result<void> check_numbers(const Recording& recording) {
-  constexpr double kLargest = std::numeric_limits<float>::max() / kMillimetres;
+  constexpr double kLargest = static_cast<double>(std::numeric_limits<float>::max()) / kMillimetres;
   for (const Channel& channel : recording.channels) {
     for (Index k = 0; k < channel.values.size(); ++k) {
       if (!std::isfinite(channel.values[k]) || std::abs(channel.values[k]) <= kLargest) continue;
