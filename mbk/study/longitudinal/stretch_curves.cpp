@@ -8,7 +8,6 @@
 #include <tuple>
 #include <utility>
 
-#include "mbk/base/core/nan.h"
 #include "mbk/base/core/units.h"
 #include "mbk/study/longitudinal/normal_range.h"
 
@@ -162,6 +161,11 @@ StretchCurve curve_of(double speed, const std::vector<const RecordedStretches*>&
     const NormalRange range = normal_range(values);
     curve.mean[i] = range.mean;
     std::tie(curve.low95[i], curve.high95[i]) = range.range95;
+  }
+  // What is compared with NaN is beyond nothing.
+  if (const auto known = static_cast<double>(curve.low95.array().isFinite().count()); known > 0.0) {
+    curve.above = static_cast<double>((curve.torque.array() > curve.high95.array()).count()) / known;
+    curve.below = static_cast<double>((curve.torque.array() < curve.low95.array()).count()) / known;
   }
   return curve;
 }

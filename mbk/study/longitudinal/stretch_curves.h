@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/nan.h"
 #include "mbk/base/core/result.h"
 #include "mbk/study/store/study_list.h"
 
@@ -13,9 +14,10 @@ namespace mbk::longitudinal {
 
 /// Resisting torque over position at one speed. Vectors have one entry for each of StretchCurves::position.
 struct StretchCurve {
-  double speed = 0;            ///< [position unit/s]
-  Vector torque;               ///< of the participant, mean over the session's recordings
-  int controls = 0;            ///< who were stretched at this speed over at least 80 % of these positions
+  double speed = 0;                   ///< [position unit/s]
+  Vector torque;                      ///< of the participant, mean over the session's recordings
+  int controls = 0;                   ///< who were stretched at this speed over at least 80 % of these positions
+  double above = kNaN, below = kNaN;  ///< shares of the positions with a range where torque is beyond it; NaN: no range
   Vector mean, low95, high95;  ///< of them, as NormalRange; NaN: fewer than kMinPeople, or one lacks the position
 };
 

@@ -50,6 +50,7 @@ void describe(Fields<Course>& fields) {
   fields.add("interval95", &Course::interval95, "from the variances of all people; null: unknown");
   fields.add("sessions", &Course::sessions);
   fields.add("changes", &Course::changes, "each later session against the first");
+  fields.add("latest", &Course::latest, "the last session against the one before, with three sessions or more");
 }
 
 void describe(Fields<OutcomeCourses>& fields) {
@@ -121,6 +122,9 @@ void describe(Fields<StretchCurve>& fields) {
   fields.add_rounded("torque", &StretchCurve::torque, document::kDigits, "of the participant, at the positions");
   fields.add("controls", &StretchCurve::controls,
              "who were stretched at this speed (within 10 %) over at least 80 % of the positions");
+  fields.add("above", &StretchCurve::above,
+             "share of the positions with a range at which torque is above it; null: there is no range");
+  fields.add("below", &StretchCurve::below, "the same, below it");
   fields.add_rounded("mean", &StretchCurve::mean, document::kDigits,
                      "of the controls; null: fewer than five, or one of them lacks the position");
   fields.add_rounded("low95", &StretchCurve::low95, document::kDigits,
@@ -366,7 +370,7 @@ void add_schemas(document::Schemas& schemas) {
 }
 
 std::string primary_outcome(const store::OutcomeColumns& columns) {
-  for (const char* name : {"stiffness_lambda_max", "K", "K_xx"}) {
+  for (const char* name : {"stiffness_lambda_max", "K", "K_xx", "stretch_increasing_slope"}) {
     if (std::ranges::find(columns.outcomes, name, &store::OutcomeColumn::name) != columns.outcomes.end()) return name;
   }
   return columns.outcomes.empty() ? "" : columns.outcomes.front().name;

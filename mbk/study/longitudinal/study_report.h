@@ -41,7 +41,7 @@ struct StudyReport {
 };
 
 /// The outcome that a page shows first unless it is asked for another: the largest stiffness [N/m], or else that of
-/// an axis; "" where nothing was measured.
+/// an axis, or else the slope of resistance over speed, or else the first; "" where nothing was measured.
 [[nodiscard]] std::string primary_outcome(const store::OutcomeColumns& columns);
 
 /// The list of courses, for one person that of them alone.
