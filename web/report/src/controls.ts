@@ -2,7 +2,7 @@
 import type { NormalRange, OutcomeRange, ParticipantReport, SideDifference, StretchCurve, StretchCurves, Value } from "@mbk/shared/documents";
 import { h, heading, svg, table } from "@mbk/shared/dom";
 import { data, fixed } from "@mbk/shared/format";
-import { among, inOutcomeOrder, isMain, outcomeName, plainly, signed, ticks, tickText } from "./outcomes";
+import { among, inOutcomeOrder, isFirst, isMain, outcomeName, plainly, signed, ticks, tickText } from "./outcomes";
 import { saveable } from "./picture";
 import { counted, csvOf, ofCondition, verdictWords } from "./study_parts";
 
@@ -118,10 +118,13 @@ const rangeWords: Record<OutcomeRange["verdict"], { text: string; kind: string }
 
 const labelled = ({ outcome, unit }: { outcome: string; unit: string }): string => (unit ? `${outcomeName(outcome)} [${unit}]` : outcomeName(outcome));
 
+/** Those that the page shows: ellipses, or what stands for them. */
+const shown = <T extends { outcome: string }>(all: T[]): T[] => all.filter(({ outcome }) => (all.some((one) => isFirst(one.outcome)) ? isFirst : isMain)(outcome));
+
 function rangeTables(ranges: OutcomeRange[]): HTMLElement[] {
   const conditions = [...new Set(ranges.map(({ condition }) => condition))];
   return conditions.flatMap((condition) => {
-    const all = inOutcomeOrder(ranges.filter((one) => one.condition === condition && isMain(one.outcome)), ({ outcome }) => outcome);
+    const all = inOutcomeOrder(shown(ranges).filter((one) => one.condition === condition), ({ outcome }) => outcome);
     const first = all[0];
     if (!first) return [];
     const name = ofCondition(condition, conditions);
@@ -162,13 +165,13 @@ const sideWords: Record<SideDifference["verdict"], string> = {
 /** Left less right; nothing where no conditions name sides. */
 export function sidesSection({ sides, controls }: ParticipantReport): HTMLElement | undefined {
   const pairs = new Map<string, SideDifference[]>();
-  for (const one of sides.filter(({ outcome }) => isMain(outcome))) {
+  for (const one of shown(sides)) {
     const key = `${one.left_condition} and ${one.right_condition}`;
     pairs.set(key, [...(pairs.get(key) ?? []), one]);
   }
   if (pairs.size === 0) return undefined;
-  const whys = new Set(sides.flatMap(({ error_basis, why_unknown }) => (error_basis !== "sessions" && why_unknown ? [why_unknown] : [])));
-  const tails = sides.some(({ heavy_tails, outcome }) => heavy_tails && isMain(outcome));
+  const whys = new Set(shown(sides).flatMap(({ error_basis, why_unknown }) => (error_basis !== "sessions" && why_unknown ? [why_unknown] : [])));
+  const tails = shown(sides).some(({ heavy_tails }) => heavy_tails);
   return h("section", { id: "sides" }, heading(2, "Left and right"),
     ...[...pairs].map(([name, all]) => table(`${name}, session ${[...new Set(all.map(({ session }) => session))].join(", ")}: left − right, with the size that 95 % of measurement errors do not exceed`,
       ["outcome", "left", "right", "left − right", "error", "result", ...(controls ? ["range of the controls", "beside it"] : [])],
