@@ -56,15 +56,16 @@ if(MBK_STATIC)
   find_library(MBK_libtinyxml.a libtinyxml.a REQUIRED)
   set_target_properties(urdfdom::urdfdom_model PROPERTIES INTERFACE_LINK_LIBRARIES
                         "console_bridge::console_bridge;urdfdom_headers::urdfdom_headers;${MBK_libtinyxml.a}")
-  # A name that the process has loaded already must not replace one of these.
-  add_link_options(-static-libstdc++ -static-libgcc -Wl,--exclude-libs,ALL)
+  # A name that the process has loaded already must not replace one of these. libgcc_s stays: glibc brings it along, and
+  # its static form would need glibc 2.35.
+  add_link_options(-static-libstdc++ -Wl,--exclude-libs,ALL)
 endif()
 
 # mbk_runs_on_older_glibc(TARGET): see older_glibc.c.
 function(mbk_runs_on_older_glibc target)
   if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|aarch64)$")
     target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/older_glibc.c)
-    target_link_options(${target} PRIVATE -Wl,--wrap=hypot)
+    target_link_options(${target} PRIVATE -Wl,--wrap=hypot,--wrap=arc4random)
   endif()
 endfunction()
 
