@@ -61,13 +61,13 @@ if(MBK_STATIC)
   add_link_options(-static-libstdc++ -Wl,--exclude-libs,ALL)
 endif()
 
-# mbk_runs_on_older_glibc(TARGET): see older_glibc.c.
-function(mbk_runs_on_older_glibc target)
-  if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|aarch64)$")
-    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/older_glibc.c)
-    target_link_options(${target} PRIVATE -Wl,--wrap=hypot,--wrap=arc4random)
-  endif()
-endfunction()
+# What a program or shared library links to run with glibc 2.34.
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|aarch64)$")
+  add_library(mbk_older_glibc OBJECT ${CMAKE_CURRENT_LIST_DIR}/older_glibc.c)
+  target_link_options(mbk_older_glibc INTERFACE -Wl,--wrap=hypot,--wrap=arc4random)
+else()
+  add_library(mbk_older_glibc INTERFACE)
+endif()
 
 # Settings that every target of this project shares.
 add_library(mbk_settings INTERFACE)
