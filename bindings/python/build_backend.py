@@ -93,9 +93,10 @@ def staged(build, folder):
     package = next(folder.rglob("mbk/__init__.py")).parent
     files = {f"mbk/{one.relative_to(package).as_posix()}": one for one in package.rglob("*")}
     files["mbk/libmbk.so.1"] = next(one for one in folder.rglob("libmbk.so.1") if one.exists())
-    # The program stands with the commands of Python, its pages where `man` looks beside these.
-    files |= {f"mbk-{version()}.data/scripts/{one.name}": one for one in folder.glob("bin/mbk*")}
-    files |= {f"mbk-{version()}.data/data/share/man/man1/{one.name}": one for one in folder.glob("share/man/man1/*")}
+    # The program stands with the commands of Python, its pages where `man` looks beside these. The robot that misbehaves
+    # (`mbk validate faults --link udp`) is 10 MB that few would miss.
+    files[f"mbk-{version()}.data/scripts/mbk"] = folder / "bin/mbk"
+    files |= {f"mbk-{version()}.data/data/share/man/man1/{one.name}": one for one in folder.glob("share/man/man1/mbk[-.]*")}
     return {path: file for path, file in files.items() if file.is_file() and "__pycache__" not in file.parts}
 
 

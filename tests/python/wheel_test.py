@@ -73,7 +73,8 @@ class Wheel(unittest.TestCase):
                      "mbk/schemas/result.schema.json"):
             self.assertIn(name, names)
         self.assertEqual([name for name in names if ".so" in name], ["mbk/libmbk.so.1"])
-        self.assertTrue(any(name.endswith(".data/scripts/mbk") for name in names))
+        self.assertEqual([name.split("/")[-1] for name in names if ".data/scripts/" in name], ["mbk"])
+        self.assertLess(self.wheel.stat().st_size, 30e6)
         self.assertTrue(any(name.endswith("THIRD_PARTY_NOTICES.md") for name in names))
         self.assertFalse([name for name in names if "__pycache__" in name])
         self.assertEqual(len(record.splitlines()), len(names))
