@@ -196,7 +196,7 @@ class Refusals(Case):
                 ((log, log), str(log)),
                 ((log, log, "--overwrite"), str(log)),
                 ((log, there), "--overwrite"),
-                ((log, self.folder / "out.xls"), ["'.xls'", ".h5", ".csv"]),
+                ((log, self.folder / "out.xls"), ["'.xls'", ".h5", ".csv", ".c3d"]),
                 ((log, self.folder / "out"), "format"),
                 ((log, self.folder / "out.mat", "--format", "mat4"), ["'mat4'", "mat73"])):
             with self.subTest(arguments[1:]):

@@ -238,6 +238,8 @@ class RatersOfAStudy(command.Case):
             self.assertLessEqual(max(map(len, text.splitlines())), 80, max(text.splitlines(), key=len))
         self.assertIn("more trials", text)
         self.assertIn(",phi,", self.do("summary", "--format", "csv").out.splitlines()[0])
+        self.assertIn("Phi", self.do("summary", "--format", "latex").out)
+        self.assertIn("rater", self.do("summary", "--format", "markdown").out.split("K_{xx}")[0])
         self.do("summary", "--raters", 2, code=WRONG_USAGE)  # of which outcome?
         study = ("--study", StatisticsOfAStudy.study)
         self.mbk("study", "summary", "--outcome", "K_xx", "--raters", 2, *study, code=WRONG_USAGE)

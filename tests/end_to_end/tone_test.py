@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Muscle tone and reflexes: EMG after perturbations, and stretches at constant velocity, from scenario to study."""
 
+import json
 import math
 import os
 import pathlib
@@ -35,6 +36,33 @@ class Tone(Case):
             self.assertIsNone(other.get("latency"))
             self.assertTrue(all(window["response"] == "none" for window in other["windows"]))
 
+    def test_stiffness_follows_the_co_contraction_of_two_muscles(self):
+        random.seed(6)
+        table = self.folder / "holding.csv"
+        lines, level, states = ["time_s,angle_rad,torque_Nm,emg_biceps (mV),emg_triceps (mV)"], 0.0, [0.0] * 4
+        for k in range(40 * 1000):
+            if k % 60 == 0:
+                level = random.choice((-1, 1)) * 0.1
+            states = [state + 0.03 * ((states[j - 1] if j else level) - state) for j, state in enumerate(states)]
+            angle = states[3]
+            activity = 0.5 - 0.4 * math.cos(2 * math.pi * k / 20000)
+            torque = -(10 + 40 * activity) * angle + random.gauss(0, 0.02)
+            lines.append(f"{k / 1000:.3f},{angle:.7f},{torque:.5f},{random.gauss(0, 0.2 * activity):.5f},"
+                         f"{random.gauss(0, 0.3 * activity):.5f}")
+        table.write_text("\n".join(lines) + "\n")
+        asked = ("explore", table, "--axes", 1, "--channels", "x=angle_rad,F=torque_Nm", "--only", "time-course", "--json")
+        course = self.fine(*asked, "--schedule", "co-contraction", "--muscles", "biceps,triceps").json["time_course"]
+        self.assertEqual(course["verdict"], "changes")
+        self.assertEqual((course["variable"], course["unit"]), ("co-contraction of emg_biceps and emg_triceps", "mean"))
+        for at, stiffness in zip(course["at"], course["K"]["value"][0]):
+            if 0.4 < at < 1.6:  # at the ends the noise of the envelopes counts
+                self.assertLess(abs(stiffness - (10 + 40 * 0.5 * at)), 2.5, at)
+        one = self.fine(*asked, "--schedule", "emg_biceps").json["time_course"]
+        self.assertEqual(one["variable"], "emg_biceps")
+        for muscles in ((), ("--muscles", "biceps"), ("--muscles", "biceps,triceps", "--mvc", "biceps=0.001")):
+            self.refused(WRONG_USAGE, *asked, "--schedule", "co-contraction", *muscles)
+        self.refused(BAD_DATA, *asked, "--schedule", "co-contraction", "--muscles", "biceps,deltoid")
+
     def test_emg_needs_no_force_and_is_read_from_any_table(self):
         random.seed(4)
         table = self.folder / "emg.csv"
@@ -56,6 +84,11 @@ class Tone(Case):
         for channel in emg["channels"]:
             self.assertLess(abs(channel["background"] / (0.8 * 20e-6 * math.sqrt(0.43)) - 1), 0.1)  # E|x| = 0.8 σ; 430 of 1000 Hz
         self.assertIsNone(triceps["directions"][0].get("latency"))
+        self.assertEqual([channel["unit"] for channel in emg["channels"]], ["V", "V"])
+        bare = self.folder / "bare.csv"
+        bare.write_text(table.read_text().replace("EMG biceps (mV)", "EMG biceps"))
+        told = self.fine("explore", bare, "--only", "emg", "--axes", 1, "--channels", "x=angle_deg:deg").out
+        self.assertRegex(told, r"emg_biceps: background 0\.010\d* \(the recording states no unit\)")
         info = self.fine("info", table, "--axes", 1, "--channels", "x=angle_deg:deg")
         self.assertIn("emg_biceps", info.out)
         measured = run("identify", self.recorded("elbow_perturbed"))
@@ -111,6 +144,59 @@ class Tone(Case):
         outcomes = {row["outcome"]: row for row in summary["outcomes"]}
         self.assertIn("stretch_increasing_slope", outcomes)
         self.assertLess(abs(outcomes["stretch_increasing_slope"]["mean"] - 0.1), 0.03)
+
+    def test_a_participant_is_shown_beside_the_controls_and_left_beside_right(self):
+        study = self.folder / "sides"
+        self.fine("study", "init", study)
+        self.fine("study", "defaults", "--study", study, "--explore", "stretch")
+        short = {}
+        for scenario in ("elbow_healthy", "elbow_spastic"):
+            text = self.fine("simulate", "--show", scenario).out
+            text = text.replace("[10, 30, 60, 90, 150, 210]", "[10, 60, 180]").replace("repetitions = 5", "repetitions = 2")
+            short[scenario] = text.replace("rate_hz = 2000", "rate_hz = 1000")
+        for person in range(1, 8):
+            for side in ("left", "right"):
+                scenario = "elbow_spastic" if person == 1 and side == "left" else "elbow_healthy"
+                text = short[scenario].replace("viscosity_Nms_per_rad = 0.1", f"viscosity_Nms_per_rad = {0.08 + 0.005 * person}")
+                (self.folder / "elbow.toml").write_text(text)
+                recording = self.folder / f"{person}_{side}.h5"
+                self.fine("simulate", self.folder / "elbow.toml", "--seed", 10 * person + (side == "left"), "--out", recording,
+                          "--quiet")
+                self.fine("study", "add", recording, "--study", study, "--participant", person, "--condition", side, "--quiet")
+        self.fine("study", "measure", "--study", study, "--quiet")
+
+        def report(name, *arguments):
+            out = self.folder / name
+            self.fine("study", "report", "--study", study, "--out", out, "--quiet", "--json", *arguments)
+            return json.loads(out.read_text(encoding="utf-8"))
+
+        found = report("one.json", "--participant", 1, "--group", "controls=2-7")
+        self.assertEqual(found["controls"], {"name": "controls", "participants": 6, "is_one": False})
+        curves = {one["condition"]: one for one in found["stretches"]}
+        fast = {side: one["speeds"][-1] for side, one in curves.items()}
+        self.assertEqual([curve["controls"] for curve in fast.values()], [6, 6])
+        self.assertGreater(fast["left"]["above"], 0.9)
+        self.assertLess(fast["right"]["above"] + fast["right"]["below"], 0.5)
+        for low, mean, high in zip(fast["left"]["low95"], fast["left"]["mean"], fast["left"]["high95"]):
+            self.assertTrue(mean is None or low is None or low < mean < high)
+        slope = {one["condition"]: one for one in found["ranges"] if one["outcome"] == "stretch_increasing_slope"}
+        self.assertEqual((slope["left"]["verdict"], slope["right"]["verdict"]), ("above", "inside"))
+        side = next(one for one in found["sides"] if one["outcome"] == "stretch_increasing_slope")
+        self.assertEqual((side["error_basis"], side["verdict"], side["range_verdict"]), ("recordings", "unknown", "above"))
+        self.assertEqual({one["participant"] for one in found["recordings"]}, {1})
+
+        few = report("few.json", "--participant", 1, "--group", "controls=2-5")
+        self.assertEqual({one["verdict"] for one in few["ranges"]}, {"unknown"})
+        self.assertTrue(all(value is None for one in few["stretches"] for curve in one["speeds"] for value in curve["low95"]))
+        own = report("own.json", "--participant", 2, "--group", "controls=2-7")
+        self.assertEqual(own["controls"], {"name": "controls", "participants": 5, "is_one": True})
+        alone = report("alone.json", "--participant", 1)
+        self.assertNotIn("controls", alone)
+        self.assertEqual((alone["ranges"], len(alone["stretches"])), ([], 2))
+        for groups in (("a=1",), ("a=2", "b=3"), ("a",)):
+            arguments = [word for group in groups for word in ("--group", group)]
+            self.refused(WRONG_USAGE, "study", "report", "--study", study, "--participant", 1, "--out",
+                         self.folder / "none.html", *arguments)
 
 
 if __name__ == "__main__":

@@ -49,6 +49,7 @@ time.sleep(%f)
 """ % (0.2 + 0.13 * k))
             self.assertEqual(ran.returncode, 0, ran)
             self.assertNotIn("terminate", ran.stderr)
+            self.assertNotIn("FATAL", ran.stderr)
 
     def test_a_recording_and_a_result_can_be_pickled(self):
         given = mbk.Recording(x=[1.0, 2.0, 3.0], F=[0.0, 1.0, 0.0], rate_hz=100, units={"x": "mm"}, metadata={"a": "b"},

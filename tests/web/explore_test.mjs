@@ -15,6 +15,8 @@ function explore(name, ...args) {
 const arm = explore("arm", makeLog("arm.mat", "--protocol", "sinusoidal", "--seed", "4", "--coloured-force-noise", "0.3"), "--report-note", "Ward 3");
 const joint = explore("joint", simulate("joint.mat", "ankle_reflex"), "--axes", "1");
 
+const muscles = explore("muscles", simulate("elbow.h5", "elbow_perturbed"), "--only", "reflex", "--muscles", "biceps,triceps");
+
 const onWholePage = (file, look) => onPage(file, async (page) => {
   await drawn(page);
   await look(page);
@@ -29,6 +31,16 @@ test("a reflex is said with its gain, and the bars are the shares of --json", ()
   const shares = ["intrinsic_alone", "both", "intrinsic_path", "reflex_path"].map((part) => Math.max(cascade.shares[0][part].VAF, 0));
   assert.equal(bars.length, shares.length);
   bars.forEach((bar, k) => assert.ok(Math.abs(bar / bars[1] - shares[k] / shares[1]) < 1e-3, `${bars} ${shares}`));
+}));
+
+test("the force that EMG explains has the shares, gains and coherence of --json", () => onWholePage(muscles.file, async (page) => {
+  const { emg } = muscles.json.parallel_cascade;
+  assert.match(await page.textContent("h1"), /Force response/);
+  assert.match(await page.textContent("#summary"), emg.explains ? /EMG explains force/ : /EMG was not shown/);
+  close((await numbers(page, "#reflex"))["emg-intrinsic"].value, emg.shares[0].intrinsic_and_emg.VAF, "VAF");
+  const text = await page.textContent("#reflex");
+  for (const { channel } of emg.muscles) assert.ok(text.includes(channel));
+  for (const band of emg.coherence) assert.ok(text.includes(band.motion_and_emg[0].toFixed(2)), text);
 }));
 
 test("M, B and K and both shares of the force are those of --json", () => onWholePage(arm.file, async (page) => {
@@ -56,7 +68,7 @@ test("each response has a Bode plot with its interval, and the disc of each freq
   assert.ok(regions > 3);
 }));
 
-for (const [name, { file }] of Object.entries({ arm, joint })) {
+for (const [name, { file }] of Object.entries({ arm, joint, muscles })) {
   test(`axe finds no violation: ${name}`, () => onWholePage(file, async (page) => {
     await page.$$eval("details", (all) => all.forEach((one) => (one.open = true)));
     assert.deepEqual(await violationsInBoth(page), []);

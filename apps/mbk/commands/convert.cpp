@@ -178,11 +178,12 @@ int run(ConvertArguments arguments) {
 
 Action add_convert(Command app) {
   auto arguments = std::make_shared<ConvertArguments>();
-  const Command command = app.add_command("convert", "convert a recording to another format: HDF5, MAT, CSV, BIDS");
+  const Command command =
+      app.add_command("convert", "convert a recording to another format: HDF5, MAT, CSV, C3D, BIDS");
   command.footer(
       "Examples:\n"
       "  mbk convert log.mat log.h5\n"
-      "      the extension of the second name determines the format: .h5 (or .hdf5), .mat (v5) or .csv\n"
+      "      the extension of the second name determines the format: .h5 (or .hdf5), .mat (v5), .csv or .c3d\n"
       "  mbk convert trial.csv trial.mat --format mat73\n"
       "  mbk convert --parts log_1.mat log_2.mat log_3.mat whole.h5\n"
       "  mbk convert log.h5 data_set --bids sub-07_ses-2_task-reach_run-1\n"
@@ -193,9 +194,9 @@ Action add_convert(Command app) {
       "      writes one file for each of several trials; {trial} stands for its name (--trial selects one)\n"
       "  mbk convert other.mat other.csv\n"
       "      if no channel is recognised, every array is copied unchanged, under its own name and in its own unit\n\n"
-      "Numbers are preserved to the last bit, with units, frames, events and metadata. Nothing is\n"
-      "resampled or repaired. What was ignored in reading, or cannot be stored in the new format, is\n"
-      "reported on standard error.");
+      "Numbers are preserved to the last bit, with units, frames, events and metadata (C3D rounds them\n"
+      "to single precision and needs an even clock). Nothing is resampled or repaired. What was ignored\n"
+      "in reading, or cannot be stored in the new format, is reported on standard error.");
   arguments->reading.options.own_samples = false;
   arguments->reading.options.emg = recording::EmgReading::same_clock;
   add_reading_options(command, arguments->reading);

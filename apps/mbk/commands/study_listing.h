@@ -27,6 +27,9 @@ struct ComparingArguments {
 /// Adds --compare and --group.
 void add_comparing_options(Command command, ComparingArguments& arguments);
 
+/// The groups of --group.   @fails  usage: a text that is no group.
+[[nodiscard]] Result<std::vector<statistics::PeopleGroup>> people_groups(const ComparingArguments& arguments);
+
 /// @fails  usage: no such comparison; a group that is none, or that nothing compares.
 [[nodiscard]] Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments);
 

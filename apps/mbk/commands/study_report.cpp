@@ -34,6 +34,16 @@ std::string command_of(const StudyReportArguments& arguments, const store::Study
                                        : " --out study.html");
 }
 
+/// With --participant, --group names the controls.
+Result<std::optional<statistics::PeopleGroup>> controls_of(const StudyReportArguments& arguments) {
+  if (!arguments.participant) return std::nullopt;
+  const auto groups = MBK_TRY(people_groups(arguments.comparing));
+  if (groups.size() > 1) {
+    return bad_usage("with --participant, --group names one group: the controls", "omit the other groups");
+  }
+  return groups.empty() ? std::nullopt : std::optional(groups.front());
+}
+
 Result<std::string> document_of(const StudyReportArguments& arguments, const store::Store& study,
                                 store::StudyList list) {
   store::OutcomeColumns columns;
@@ -41,13 +51,18 @@ Result<std::string> document_of(const StudyReportArguments& arguments, const sto
     columns = MBK_TRY(study.columns(list.analysis->number));
   }
   statistics::add_matrix_numbers(columns);
-  const auto options = MBK_TRY(statistics_options(arguments.comparing));
+  const auto controls = MBK_TRY(controls_of(arguments));
+  const auto options =
+      arguments.participant ? statistics::StatisticsOptions() : MBK_TRY(statistics_options(arguments.comparing));
   auto statistics = MBK_TRY(statistics::study_statistics(columns, options));
   const std::string command = command_of(arguments, list);
   auto report = MBK_TRY(longitudinal::study_report(std::move(list), std::move(columns), std::move(statistics),
                                                    arguments.participant, arguments.outcome));
   report.command = command;
   report.note = printable(arguments.note);
+  if (arguments.participant) {
+    report.comparison = MBK_TRY(longitudinal::compare_participant(study, report, *arguments.participant, controls));
+  }
   return arguments.participant ? longitudinal::participant_report_json(report, *arguments.participant)
                                : longitudinal::study_report_json(report);
 }
@@ -82,10 +97,13 @@ Action add_study_report(Command group) {
       "      reliability, participants, sessions, ellipses, exclusions with their reasons\n"
       "  mbk study report --participant 7 --out participant_7.html\n"
       "      changes since the first session, compared with the minimal detectable change\n"
+      "  mbk study report --participant 7 --group controls=21-30 --out participant_7.html\n"
+      "      also the last session beside the range of these participants; left beside right, if conditions\n"
+      "      are named so\n"
       "  mbk study report --outcome K_xx --compare condition relaxed tensed --out study.html\n\n"
       "A report is one file that needs no network. It prints on A4, and its data can be saved from it. It\n"
       "contains health data: treat it as such. The report of a participant contains no numbers of other\n"
-      "people.");
+      "people but those that describe all of them, or all controls, together.");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
   const Option participant = command.add_option("--participant", arguments->participant, "report on this participant")
@@ -98,6 +116,8 @@ Action add_study_report(Command group) {
       .check(not_empty());
   add_comparing_options(command, arguments->comparing);
   command.get_option("--compare").excludes(participant);
+  command.get_option("--group").description(
+      "a group and its participants: patients=1-10,12; with --participant: the controls");
   command.add_option("--note", arguments->note, "a line below the title, such as a date; mbk adds none")
       .type_name("TEXT");
   add_output_options(command, arguments->output, "mbk.study_report/1, mbk.participant_report/1");

@@ -73,17 +73,23 @@ Result<statistics::PeopleGroup> group_of(const std::string& text) {
 
 }  // namespace
 
-Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments) {
-  statistics::StatisticsOptions options;
+Result<std::vector<statistics::PeopleGroup>> people_groups(const ComparingArguments& arguments) {
+  std::vector<statistics::PeopleGroup> groups;
   for (const std::string& text : arguments.groups) {
     auto group = MBK_TRY(group_of(text));
-    const auto same = std::ranges::find(options.groups, group.name, &statistics::PeopleGroup::name);
-    if (same == options.groups.end()) {
-      options.groups.push_back(std::move(group));
+    const auto same = std::ranges::find(groups, group.name, &statistics::PeopleGroup::name);
+    if (same == groups.end()) {
+      groups.push_back(std::move(group));
     } else {
       same->participants.insert(same->participants.end(), group.participants.begin(), group.participants.end());
     }
   }
+  return groups;
+}
+
+Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments) {
+  statistics::StatisticsOptions options;
+  options.groups = MBK_TRY(people_groups(arguments));
   if (arguments.compare.empty()) {
     if (!options.groups.empty())
       return bad_usage("--group is valid only with --compare group", "add --compare group, or omit --group");

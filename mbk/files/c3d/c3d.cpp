@@ -32,12 +32,14 @@ class Decoder {
     contents_.table = true;
     layout_ = MBK_TRY(c3d_layout(file_, parameters_, file_.view.size(), contents_.notes));
     MBK_TRY(check_room());
+    take_exact_rate();
     say_what_there_is();
     take_points();
     take_analog();
     const double seconds = layout_.point_rate > 0.0 ? static_cast<double>(layout_.frames) / layout_.point_rate : 0.0;
     contents_.events =
         c3d_events(file_, parameters_, layout_.point_rate, layout_.first_frame, seconds, contents_.notes);
+    take_own_group();
     return std::move(contents_);
   }
 
@@ -245,6 +247,42 @@ class Decoder {
       }
     }
     return values;
+  }
+
+  // ---- what only mbk writes ----
+
+  [[nodiscard]] std::optional<double> own_number(std::string_view name) const {
+    const auto numbers = parameters_.numbers_in_digits(kOwnC3dGroup, name);
+    return numbers.empty() ? std::nullopt : std::optional(numbers.front());
+  }
+
+  /// The rate that POINT:RATE rounds, unless another program has changed that.
+  void take_exact_rate() {
+    constexpr double kReal = 1e-6;  // relative
+    const auto rate = own_number("RATE");
+    if (!rate || !(std::abs(*rate - layout_.point_rate) <= kReal * layout_.point_rate)) return;
+    layout_.point_rate = *rate;
+    if (layout_.analog_rate > 0.0) layout_.analog_rate = *rate * static_cast<double>(layout_.samples);
+  }
+
+  /// Metadata, and the time of frame 1.
+  void take_own_group() {
+    const auto keys = parameters_.texts(kOwnC3dGroup, "KEYS"), rows = parameters_.texts(kOwnC3dGroup, "VALUES");
+    std::string* value = nullptr;
+    for (std::size_t k = 0; k < std::min(keys.size(), rows.size()); ++k) {
+      if (!keys[k].empty()) value = &contents_.metadata[keys[k]];
+      if (value != nullptr && rows[k].size() >= 2) *value += rows[k].substr(1, rows[k].size() - 2);  // without quotes
+    }
+    const auto start = own_number("START");
+    if (!start || !std::isfinite(*start) || layout_.point_rate == 0.0 || layout_.points * (layout_.samples - 1) > 0) {
+      return;
+    }
+    const double rate = layout_.point_rate * static_cast<double>(layout_.samples);
+    const double first = *start + (layout_.first_frame - 1.0) / layout_.point_rate;
+    const auto samples = static_cast<Index>(layout_.frames * layout_.samples);
+    const Vector steps = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1));
+    add("time", "s", rate, {}).values = SharedMatrix::of_column(first + (steps.array() / rate));
+    for (Event& event : contents_.events) event.time += first;
   }
 
   C3dBytes file_;

@@ -3,12 +3,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "mbk/base/core/result.h"
 #include "mbk/files/c3d/c3d_parameters.h"
 #include "mbk/files/contents/contents.h"
 
 namespace mbk::recording {
+
+/// The group of parameters of files that mbk wrote (recording/encode.h).
+inline constexpr std::string_view kOwnC3dGroup = "MBK";
 
 /// Whether the file has a C3D signature.
 [[nodiscard]] bool looks_like_c3d(std::span<const std::byte> file);
@@ -21,6 +25,9 @@ namespace mbk::recording {
 /// (stored − OFFSET)·SCALE·GEN_SCALE in its ANALOG:UNITS. Missing labels become point_7 or analog_7; repeated ones
 /// become LABEL#1, LABEL#2, …. Arrays have their rate. Events come from the header and from the groups EVENT and
 /// EVENTS, on a clock that is 0 at the first frame of the file. Contents::notes lists anything unusual.
+///
+/// A file that mbk wrote also gives metadata, values of events, its exact rate, and the array `time` if it does not
+/// begin at 0.
 ///
 /// Arrays whose scale is 0, or differs between header and parameters, have an obstacle instead of values.
 ///

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/files/c3d/c3d.h"
 
 namespace mbk::recording {
 namespace {
@@ -75,6 +76,8 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
     const auto contexts = parameters.texts(group, "CONTEXTS");
     const std::size_t used =
         static_cast<std::size_t>(std::clamp(parameters.number(group, "USED").value_or(65535.0), 0.0, 65535.0));
+    auto values = group == "EVENT" ? parameters.numbers_in_digits(kOwnC3dGroup, "EVENT_VALUES") : std::vector<double>();
+    if (values.size() != used) values.assign(used, 0.0);  // other events than mbk wrote
     const std::vector<MinutesAndSeconds> times = times_of(parameters, group, labels.empty() ? used : labels.size());
     for (std::size_t k = 0; k < std::min(used, times.size()); ++k) {
       double time = 60.0 * times[k].minutes + times[k].seconds;
@@ -89,7 +92,7 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
       const std::string context = k < contexts.size() ? contexts[k] : "";
       const std::string label = k < labels.size() ? labels[k] : "";
       events.push_back(
-          {time - from, named(context.empty() || label.empty() ? context + label : context + " " + label)});
+          {time - from, named(context.empty() || label.empty() ? context + label : context + " " + label), values[k]});
       shifted = from > 0.0;
     }
   }

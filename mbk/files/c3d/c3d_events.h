@@ -12,8 +12,8 @@ namespace mbk::recording {
 /// Events in the header count from that frame, those in the groups EVENT and EVENTS (KINARM) from frame 1, whatever the
 /// first frame is. TIMES holds whole minutes and seconds for each event (C3D User Guide, EVENT:TIMES), or seconds only.
 /// Dexterit-E does not use the first of the two rows of EVENTS: minutes there are ignored if they lead beyond the
-/// recording and the seconds alone do not. An event in both header and group appears once. `notes` lists invalid
-/// events.
+/// recording and the seconds alone do not. An event in both header and group appears once. Events of mbk have the
+/// values in MBK:EVENT_VALUES. `notes` lists invalid events.
 /// @param file  at least a header; `rate` 0 if unknown    @param seconds  of the recording; 0: not known
 [[nodiscard]] std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& parameters, double rate_hz,
                                             double first_frame, double seconds, std::vector<std::string>& notes);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -164,6 +165,16 @@ std::vector<double> C3dParameters::numbers(std::string_view group, std::string_v
     if (part.type == C3dParameter::Type::text) return;
     for (std::size_t i = 0; i < count_of(part); ++i) values.push_back(value_at(part, i, unsigned_words));
   });
+  return values;
+}
+
+std::vector<double> C3dParameters::numbers_in_digits(std::string_view group, std::string_view name) const {
+  std::vector<double> values;
+  for (const std::string& text : texts(group, name)) {
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, values.emplace_back());
+    if (read.ec != std::errc() || read.ptr != end) return {};
+  }
   return values;
 }
 

@@ -74,6 +74,8 @@ class C3dParameters {
   /// The values of NAME, then of NAME2, NAME3, … while they exist; empty if NAME is missing or text.
   [[nodiscard]] std::vector<double> numbers(std::string_view group, std::string_view name,
                                             bool unsigned_words = false) const;
+  /// The texts of NAME, NAME2, … as numbers; empty if one is none. More digits than a real has, NaN included.
+  [[nodiscard]] std::vector<double> numbers_in_digits(std::string_view group, std::string_view name) const;
   /// The texts of NAME, NAME2, NAME3, … in printable UTF-8 without spaces around them.
   [[nodiscard]] std::vector<std::string> texts(std::string_view group, std::string_view name) const;
 

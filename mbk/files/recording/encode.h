@@ -39,6 +39,15 @@ namespace mbk::recording {
 /// @fails  a name or key that could not be read back.
 [[nodiscard]] Result<std::string> encode_csv(const Recording& recording);
 
+/// Intel reals: every channel is analog, in its unit; a hand in the plane or in space is also the marker "hand" [mm].
+/// Texts are UTF-8. The group EVENT holds the events; what C3D has no place for is in the group MBK (metadata, the
+/// values of events, exact rate and first time). Numbers have single precision (relative error 6e-8), times of events 2
+/// µs. Numbers that are not finite are NaN, and the marker is invalid there. (c3d.org, "The C3D File Format".)
+/// @fails  data: times that are not even within 1 % of an interval, or fewer than two; numbers beyond single precision;
+/// names of more than 127 bytes; more than 130 kB of names, events and metadata.
+[[nodiscard]] Result<std::string> encode_c3d(const Recording& recording);
+[[nodiscard]] std::vector<std::string> lost_in_c3d(const Recording& recording);
+
 /// Appends the shortest digits that give the number back.
 void append_number(std::string& text, double value);
 

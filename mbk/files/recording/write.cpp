@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <set>
 
 #include "mbk/base/core/printable.h"
@@ -25,6 +26,7 @@ constexpr auto kExtensions = std::to_array<Extension>({
     {".h5", Format::hdf5},
     {".hdf5", Format::hdf5},
     {".csv", Format::csv},
+    {".c3d", Format::c3d},
 });
 
 Result<std::string> encode(const Recording& recording, Format format) {
@@ -35,6 +37,8 @@ Result<std::string> encode(const Recording& recording, Format format) {
       return encode_mat_hdf5(recording);
     case Format::hdf5:
       return encode_hdf5(recording);
+    case Format::c3d:
+      return encode_c3d(recording);
     case Format::csv:
       break;
   }
@@ -76,6 +80,8 @@ std::string_view text(Format format) {
       return "MAT v7.3";
     case Format::hdf5:
       return "HDF5";
+    case Format::c3d:
+      return "C3D";
     case Format::csv:
       break;
   }
@@ -96,13 +102,23 @@ Result<Format> format_of(const std::filesystem::path& file, std::string_view nam
   }
   if (!name.empty()) {
     return bad_usage(fmt::format("format '{}' cannot be written", printable(std::string(name))),
-                     "choose mat5, mat73, hdf5 or csv");
+                     "choose mat5, mat73, hdf5, csv or c3d");
   }
   if (by_extension != kExtensions.end()) return by_extension->format;
   return fail(ErrorKind::usage,
               extension.empty() ? "the file name has no extension that gives the format"
                                 : fmt::format("format '{}' cannot be written", printable(extension)),
-              "use the extension .h5, .mat or .csv", file.string());
+              "use the extension .h5, .mat, .csv or .c3d", file.string());
+}
+
+Result<Format> format_of(const std::filesystem::path& file) {
+  auto format = format_of(file, "");
+  if (format && *format != Format::c3d) return format;
+  Error error = format ? Error{ErrorKind::usage, "C3D rounds numbers to single precision", "", file.string()}
+                       : std::move(format.error());
+  error.remedy = "use the extension .h5, .mat or .csv";
+  if (format) error.remedy += ", then 'mbk convert'";
+  return tl::unexpected(std::move(error));
 }
 
 std::vector<std::string> lost_frames(const Recording& recording, std::string_view format) {
@@ -117,7 +133,10 @@ std::vector<std::string> lost_frames(const Recording& recording, std::string_vie
 }
 
 std::vector<std::string> lost_in(const Recording& recording, Format format) {
-  return format == Format::hdf5 ? std::vector<std::string>() : lost_frames(recording, text(format));
+  if (format == Format::hdf5) return {};
+  std::vector<std::string> lost = lost_frames(recording, text(format));
+  if (format == Format::c3d) std::ranges::move(lost_in_c3d(recording), std::back_inserter(lost));
+  return lost;
 }
 
 Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format, bool overwrite,

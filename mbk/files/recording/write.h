@@ -18,19 +18,25 @@ enum class Format {
   mat73,  ///< .mat, asked for by name: HDF5 within
   hdf5,   ///< .h5, .hdf5
   csv,    ///< .csv
+  c3d,    ///< .c3d, only to convert to: it rounds numbers
 };
 
 [[nodiscard]] constexpr auto word_table(Format) {
   using enum Format;
-  return std::to_array<Word<Format>>({{mat5, "mat5"}, {mat73, "mat73"}, {hdf5, "hdf5"}, {csv, "csv"}});
+  return std::to_array<Word<Format>>({{mat5, "mat5"}, {mat73, "mat73"}, {hdf5, "hdf5"}, {csv, "csv"}, {c3d, "c3d"}});
 }
 
-/// "MAT v5", "MAT v7.3", "HDF5", "CSV".
+/// "MAT v5", "MAT v7.3", "HDF5", "CSV", "C3D".
 [[nodiscard]] std::string_view text(Format format);
 
-/// The format given by the extension of a file, or by `name` ("mat", "mat5", "mat73", "hdf5", "csv").
+/// The format given by the extension of a file, among those that preserve every number.
+/// @fails  usage: it gives no such format; the message lists them.
+[[nodiscard]] Result<Format> format_of(const std::filesystem::path& file);
+
+/// The format to convert to, given by the extension, or by `name` ("mat", "mat5", "mat73", "hdf5", "csv", "c3d"; "":
+/// by the extension).
 /// @fails  usage: neither gives a known format; the message lists the known ones.
-[[nodiscard]] Result<Format> format_of(const std::filesystem::path& file, std::string_view name = "");
+[[nodiscard]] Result<Format> format_of(const std::filesystem::path& file, std::string_view name);
 
 /// Data that such a file cannot store, one sentence each; none if everything is restored.
 [[nodiscard]] std::vector<std::string> lost_in(const Recording& recording, Format format);

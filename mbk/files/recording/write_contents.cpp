@@ -229,6 +229,10 @@ Result<std::string> encode_contents_csv(const Contents& contents, std::vector<st
 Result<std::string> encode(const Contents& contents, Format format, std::vector<std::string>& said) {
   if (format == Format::hdf5) return encode_contents_hdf5(contents, said);
   if (format == Format::csv) return encode_contents_csv(contents, said);
+  if (format == Format::c3d) {
+    return bad_data("no channel is recognised, and C3D cannot store arrays unchanged",
+                    "name the channels with --channels, or write .h5, .mat or .csv");
+  }
   const auto variables = MBK_TRY(variables_of(contents, said));
   return format == Format::mat5 ? encode_mat_level5(variables) : encode_mat_hdf5(variables);
 }

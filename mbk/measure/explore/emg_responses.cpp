@@ -441,6 +441,10 @@ bool is_emg(const Channel& channel) {
   return channel.name == "emg" || channel.name.starts_with("emg_");
 }
 
+std::string emg_channel_of(const std::string& muscle) {
+  return is_emg({.name = muscle}) ? muscle : "emg_" + muscle;
+}
+
 Result<EmgEstimate> emg_responses(std::span<const EmgRecording> recordings, double sample_time,
                                   const EmgOptions& options) {
   MBK_TRY(check_windows(options));
@@ -498,6 +502,7 @@ Result<EmgEstimate> emg_responses(std::span<const EmgRecording> recordings, doub
     auto channel = responses.of(names[at], 1000 * at + 1, rms[at]);
     if (!channel) return tl::unexpected(channel.error().in(names[at]));
     channels[at] = std::move(*channel);
+    channels[at].unit = recordings.front().recording->find(names[at])->unit;
     return {};
   }));
   const std::vector<bool> weak = weak_channels(rms);

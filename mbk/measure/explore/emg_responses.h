@@ -69,6 +69,9 @@ struct EmgRecording {
 /// Whether a channel is EMG: its name is emg or begins with emg_.
 [[nodiscard]] bool is_emg(const Channel& channel);
 
+/// "emg_biceps" of "biceps" and of itself.
+[[nodiscard]] std::string emg_channel_of(const std::string& muscle);
+
 /// Responses of all channels emg_* that all recordings have, with their epochs pooled. One channel at a time is
 /// processed, so that only one is in memory beside the recordings. Directions differ by 15° or more. An onset is
 /// omitted if the epoch is not within the recording or if the onset before it is less than an epoch away.

@@ -7,6 +7,7 @@
 #include "mbk/base/dsp/autoregression.h"
 #include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {
@@ -339,6 +340,35 @@ Matrix whitened(const Matrix& columns, const Vector& filter, const std::vector<R
     row += size;
   }
   return result;
+}
+
+Vector nested_squares(const Matrix& Z, const Vector& y) {
+  Matrix all(Z.rows(), Z.cols() + 1);
+  const Vector scale = Z.colwise().norm().cwiseInverse();
+  all << Z * scale.asDiagonal(), y;
+  const Matrix triangle = numeric::householder_triangle(all);
+  Vector squares(Z.cols() + 1);
+  double left = y.squaredNorm();
+  for (Index r = 0; r <= Z.cols(); ++r) {
+    squares[r] = left;
+    if (r < Z.cols()) left -= triangle(r, Z.cols()) * triangle(r, Z.cols());
+  }
+  return squares;
+}
+
+double chance_of_no_part(const Matrix& Z, Index base, const Matrix& Y, const std::vector<RowRange>& ranges) {
+  const LaggedFit fit = fit_lagged(Z, Z, Y, ranges);
+  const auto tested = static_cast<double>(Z.cols() - base);
+  double least = 1.0;
+  for (Index j = 0; j < Y.cols(); ++j) {
+    const Vector& noise = fit.noise[static_cast<std::size_t>(j)];
+    const Vector squares = nested_squares(whitened(Z, noise, ranges), whitened(Y.col(j), noise, ranges));
+    const auto freedom = static_cast<double>(Y.rows() - Z.cols() - noise.size());
+    const double with = squares[Z.cols()], without = squares[base];
+    least =
+        std::min(least, numeric::f_probability_above((without - with) / tested / (with / freedom), tested, freedom));
+  }
+  return std::min(1.0, least * static_cast<double>(Y.cols()));
 }
 
 AccountedFor accounted_for(const Vector& y, const Vector& e, const std::vector<RowRange>& ranges, double sample_time) {

@@ -100,6 +100,16 @@ struct LaggedFit {
 /// @param columns rows of `ranges` under each other
 [[nodiscard]] Matrix whitened(const Matrix& columns, const Vector& filter, const std::vector<RowRange>& ranges);
 
+/// Residual sums of squares of y by the first r columns of Z, r = 0 … p.
+/// @param Z N×p    @param y N    @returns p + 1
+[[nodiscard]] Vector nested_squares(const Matrix& Z, const Vector& y);
+
+/// Chance of the columns behind the first `base` to explain as much of Y as they do where they have no part in it: F
+/// test of rows whitened by the autoregression of what all columns leave; the least of the outputs, Bonferroni.
+/// @param Z N×p, Y N×q, centred: the rows of `ranges` under each other
+[[nodiscard]] double chance_of_no_part(const Matrix& Z, Index base, const Matrix& Y,
+                                       const std::vector<RowRange>& ranges);
+
 /// How much of the variance of y a prediction accounts for, and how sure that is.
 struct AccountedFor {
   double percent = 0;     ///< 100 (1 − var e/var y), Dyck 2013, eq. 3.10

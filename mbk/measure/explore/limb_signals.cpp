@@ -23,15 +23,18 @@ constexpr Index kEnds = 12;         ///< rows at each end of a trial that the lo
 constexpr double kExplained = 0.5;  ///< share of the motion that the reference must explain to stand for it
 constexpr dsp::SavitzkyGolay kStencil{.order = 8, .window = 9};
 
-/// [x ẋ ẍ −F r] of one trial behind the low-pass.
+/// [x ẋ ẍ −F r e] of one trial behind the low-pass.
 Result<Matrix> filtered(const ExplorationTrial& trial, Index every) {
   const Hertz rate(1.0 / trial.sample_time);
   const auto velocity = MBK_TRY(dsp::savitzky_golay(kStencil, 1, trial.input, rate));
   const auto acceleration = MBK_TRY(dsp::savitzky_golay(kStencil, 2, trial.input, rate));
   const Index n = trial.axes, lost = kStencil.half_window(), rows = velocity.rows();
-  Matrix all(rows, 4 * n + trial.reference.cols());
+  const auto optional = [&](const Matrix& signals) {
+    return signals.size() > 0 ? Matrix(signals.middleRows(lost, rows)) : Matrix(rows, 0);
+  };
+  Matrix all(rows, 4 * n + trial.reference.cols() + trial.muscles.cols());
   all << trial.input.middleRows(lost, rows), velocity, acceleration, trial.output.middleRows(lost, rows),
-      trial.reference.size() > 0 ? trial.reference.middleRows(lost, rows) : Matrix(rows, 0);
+      optional(trial.reference), optional(trial.muscles);
   return dsp::decimate(all, rate, every);
 }
 
@@ -114,6 +117,10 @@ Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
   signals.acceleration.resize(total, n);
   signals.resistance.resize(total, n);
   Matrix reference(referenced ? total : 0, n);
+  const Index muscles = trials.front().muscles.cols();
+  signals.muscles.resize(total, muscles);
+  signals.muscle_names = trials.front().muscle_names;
+  signals.muscle_units = trials.front().muscle_units;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const RowRange& piece = signals.pieces[k];
     const auto rows = Eigen::seqN(piece.begin, piece.size());
@@ -121,7 +128,8 @@ Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
     signals.velocity(rows, Eigen::all) = parts[k].middleCols(n, n);
     signals.acceleration(rows, Eigen::all) = parts[k].middleCols(2 * n, n);
     signals.resistance(rows, Eigen::all) = parts[k].middleCols(3 * n, n);
-    if (referenced) reference(rows, Eigen::all) = parts[k].rightCols(n);
+    if (referenced) reference(rows, Eigen::all) = parts[k].middleCols(4 * n, n);
+    signals.muscles(rows, Eigen::all) = parts[k].rightCols(muscles);
   }
   signals.position = centred(signals.position);
   if (referenced) explain(reference, signals);

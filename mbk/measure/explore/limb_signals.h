@@ -18,12 +18,14 @@ inline constexpr double kResponseBand = 50.0;
 /// Trials as impulse responses are fitted to them: freed of what is beyond the band, decimated, under each other.
 struct LimbSignals {
   int axes = 1;
-  double sample_time = 0;                ///< T [s] after decimation
-  Index every = 1;                       ///< samples of the recording per row
-  Matrix position;                       ///< N×n, x [m or rad], without its mean
-  Matrix velocity, acceleration;         ///< N×n
-  Matrix resistance;                     ///< N×n, −F_h [N or N·m]
-  Matrix explained;                      ///< N×3n, [x ẋ ẍ] as the reference explains them; empty where it does not
+  double sample_time = 0;         ///< T [s] after decimation
+  Index every = 1;                ///< samples of the recording per row
+  Matrix position;                ///< N×n, x [m or rad], without its mean
+  Matrix velocity, acceleration;  ///< N×n
+  Matrix resistance;              ///< N×n, −F_h [N or N·m]
+  Matrix explained;               ///< N×3n, [x ẋ ẍ] as the reference explains them; empty where it does not
+  Matrix muscles;                 ///< N×m, rectified EMG behind the same low-pass; m = 0 where none was named
+  std::vector<std::string> muscle_names, muscle_units;  ///< m, as in ExplorationTrial
   Vector explained_share;                ///< n, of the variance of x that the reference explains; empty without one
   std::vector<RowRange> pieces;          ///< rows without a break
   Index first_sample = 0;                ///< of each trial: the one of its first row

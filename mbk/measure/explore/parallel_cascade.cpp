@@ -11,6 +11,7 @@
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/explore/emg_path.h"
 #include "mbk/measure/explore/lagged_regression.h"
 #include "mbk/measure/explore/response_model.h"
 #include "mbk/measure/explore/second_order_reflex.h"
@@ -58,21 +59,6 @@ std::vector<Vector> directions_of(Index axes) {
     directions.push_back(Vector{{std::cos(angle), std::sin(angle)}});
   }
   return directions;
-}
-
-/// Σ_k over the last kept columns, so that a delay may be dropped: residual sum of squares of the first r columns.
-Vector nested_squares(const Matrix& Z, const Vector& y) {
-  Matrix all(Z.rows(), Z.cols() + 1);
-  const Vector scale = Z.colwise().norm().cwiseInverse();
-  all << Z * scale.asDiagonal(), y;
-  const Matrix triangle = numeric::householder_triangle(all);
-  Vector squares(Z.cols() + 1);
-  double left = y.squaredNorm();
-  for (Index r = 0; r <= Z.cols(); ++r) {
-    squares[r] = left;
-    if (r < Z.cols()) left -= triangle(r, Z.cols()) * triangle(r, Z.cols());
-  }
-  return squares;
 }
 
 class Cascade {
@@ -229,19 +215,9 @@ class Cascade {
         grouped({v.measured.cwiseAbs(), v.explained.size() > 0 ? Matrix(v.explained.cwiseAbs()) : Matrix()});
     Matrix Z(Y_.rows(), intrinsic_.explained.cols() + linear.cols() + unsigned_speed.cols());
     Z << intrinsic_.explained, linear, unsigned_speed;
-    const LaggedFit fit = fit_lagged(Z, Z, Y_, rows_);
-    double least = 1.0;
-    const auto tested = static_cast<double>(unsigned_speed.cols());
-    for (Index j = 0; j < n_; ++j) {
-      const Vector& noise = fit.noise[static_cast<std::size_t>(j)];
-      const Vector squares = nested_squares(whitened(Z, noise, rows_), whitened(Y_.col(j), noise, rows_));
-      const auto freedom = static_cast<double>(Y_.rows() - Z.cols() - noise.size());
-      const double with = squares[Z.cols()], without = squares[Z.cols() - unsigned_speed.cols()];
-      least =
-          std::min(least, numeric::f_probability_above((without - with) / tested / (with / freedom), tested, freedom));
-    }
+    const double chance = chance_of_no_part(Z, Z.cols() - unsigned_speed.cols(), Y_, rows_);
     const auto directions = static_cast<double>(directions_of(n_).size()) / 2.0;  // |v| is the same to and fro
-    return std::min(1.0, least * static_cast<double>(n_) * directions);
+    return std::min(1.0, chance * directions);
   }
 
   void decide() {
@@ -440,7 +416,8 @@ class Cascade {
           (joint.directions * C).cwiseProduct(joint.directions).rowwise().sum().cwiseMax(0.0).cwiseSqrt() / T_;
     }
     describe(through(stretch, polynomial));
-    stretch_ = through(stretch, polynomial).measured;
+    stretch_ = through(stretch, polynomial);
+    reflex_directions_ = joint.directions;
     joint_ = std::move(joint.fit);
     joint_->coefficients.conservativeResize(base, Eigen::NoChange);
     for (Matrix& C : joint_->covariance) C = C.topLeftCorner(base, base).eval();
@@ -505,12 +482,13 @@ class Cascade {
       }
     }
     const auto rows = rows_inside(result_.held_out ? s_.validation : s_.identification, s_.pieces, last_, L_);
+    if (s_.muscles.cols() > 0) result_.emg = emg_path_on(rows);
     if (row_count(rows) < 2) return;
     const Matrix force = rows_of(s_.resistance, rows), motion = lagged(s_.position, -L_, L_, rows);
     const Matrix alone = motion * (directions_ * alone_.coefficients);
     const Matrix intrinsic = motion * (directions_ * fit.coefficients);
     const Matrix reflex =
-        joint_ ? Matrix(lagged(stretch_, start_, end_, rows) * reflex_) : Matrix::Zero(force.rows(), n_);
+        joint_ ? Matrix(lagged(stretch_.measured, start_, end_, rows) * reflex_) : Matrix::Zero(force.rows(), n_);
     for (Index j = 0; j < n_; ++j) {
       const auto judged = [&](const Vector& predicted) {
         const AccountedFor one = accounted_for(force.col(j), force.col(j) - predicted, rows, T_);
@@ -523,6 +501,18 @@ class Cascade {
       shares.reflex_path = judged(reflex.col(j));
       result_.shares.push_back(shares);
     }
+  }
+
+  [[nodiscard]] EmgPath emg_path_on(const std::vector<RowRange>& judged) const {
+    const PathColumns intrinsic{intrinsic_.measured, intrinsic_.explained,
+                                lagged(s_.position, -L_, L_, judged) * directions_};
+    PathColumns reflex{Matrix(Y_.rows(), 0), Matrix(Y_.rows(), 0), Matrix(row_count(judged), 0)};
+    if (joint_) {
+      const Both lags = columns(stretch_, start_, end_);
+      reflex = {lags.measured * reflex_directions_, lags.explained * reflex_directions_,
+                lagged(stretch_.measured, start_, end_, judged) * reflex_directions_};
+    }
+    return emg_path(s_, rows_, judged, intrinsic, reflex);
   }
 
   const LimbSignals& s_;
@@ -538,7 +528,8 @@ class Cascade {
   std::optional<LaggedFit> joint_;  ///< its intrinsic part
   Vector direction_;
   Vector none_, one_way_, to_and_fro_, both_ways_;  ///< errors fold by fold; to_and_fro_: the opposite direction
-  Matrix reflex_, stretch_;                         ///< g T; N(v⁺)
+  Matrix reflex_, reflex_directions_;               ///< g T; lags×r
+  Both stretch_;                                    ///< N(v⁺)
   ParallelCascadeEstimate result_;
 };
 

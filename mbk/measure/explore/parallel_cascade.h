@@ -20,6 +20,8 @@ namespace mbk::explore {
 /// even nonlinearity, such as the geometry of a limb of two links, answers both); better than motion in both directions
 /// alike (a linear limb with a long memory); and where |eᵀẋ| adds to the latter, by an F test of the whitened rows at
 /// 0.1 %, Bonferroni over axes and directions.
+/// Where the signals have muscles, their EMG is a third path beside those that were found (emg_path.h); what is found
+/// of the two does not depend on it.
 /// @returns `not_identifiable` where there are fewer than ten rows for each coefficient
 /// @fails  a force or motion that does not vary
 [[nodiscard]] Result<ParallelCascadeEstimate> parallel_cascade(const LimbSignals& signals);

@@ -20,6 +20,7 @@
 #include "mbk/measure/explore/stretch_muscles.h"
 #include "mbk/measure/explore/time_course.h"
 #include "mbk/measure/measurement/course_variable.h"
+#include "mbk/measure/measurement/muscles.h"
 #include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/measure/preprocess/exploration_trial_of.h"
 #include "mbk/measure/preprocess/force_delay.h"
@@ -42,9 +43,19 @@ Result<Channel> named_channel(const Recording& recording, const std::string& nam
                   "name a channel, a column (number or name) or a variable");
 }
 
+bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// Whether the schedule is a channel as it was recorded, and not made of EMG.
+bool scheduled_by_channel(const ExploreOptions& options) {
+  return !options.schedule.empty() && options.schedule != kCoContraction &&
+         !is_one_of(options.schedule, options.muscles);
+}
+
 /// The recording as that of one axis: the input in the place of the position, the output in that of −F.
-Result<Recording> with_signals(const Recording& recording, const ExploredSignals& signals,
-                               const std::string& schedule) {
+Result<Recording> with_signals(const Recording& recording, const ExploreOptions& options) {
+  const ExploredSignals& signals = *options.signals;
   Recording one = recording;
   one.channels.clear();
   const auto add = [&](const std::string& name, const char* as, double sign) -> Result<void> {
@@ -60,9 +71,12 @@ Result<Recording> with_signals(const Recording& recording, const ExploredSignals
   if (!signals.reference.empty()) {
     MBK_TRY(add(signals.reference, "reference", 1.0));
   }
-  if (!schedule.empty()) {
-    auto channel = MBK_TRY(named_channel(recording, schedule));
+  if (scheduled_by_channel(options)) {
+    auto channel = MBK_TRY(named_channel(recording, options.schedule));
     if (one.find(channel.name) == nullptr) one.channels.push_back(std::move(channel));
+  }
+  for (const Channel& channel : recording.channels) {
+    if (is_one_of(channel.name, options.muscles) && one.find(channel.name) == nullptr) one.channels.push_back(channel);
   }
   return one;
 }
@@ -70,7 +84,7 @@ Result<Recording> with_signals(const Recording& recording, const ExploredSignals
 Result<ExplorationTrial> explored_trial(const Recording& recording, const ExploreOptions& options) {
   if (options.signals) {
     const ExploredSignals& signals = *options.signals;
-    const auto one = MBK_TRY(with_signals(recording, signals, options.schedule));
+    const auto one = MBK_TRY(with_signals(recording, options));
     ExploreOptions rest = options;
     rest.signals.reset();
     rest.preprocess.axes = 1;
@@ -101,7 +115,8 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
   auto trial = preprocess::exploration_trial_of(source, even->recording ? recording::inspect(source) : recorded,
                                                 options.preprocess);
   if (trial && even->warning) trial->warnings.push_back(std::move(*even->warning));
-  if (trial && !options.schedule.empty()) {
+  if (trial) MBK_TRY(add_muscles(source, options.muscles, options.emg.processing, *trial));
+  if (trial && scheduled_by_channel(options)) {
     const auto channel = MBK_TRY(named_channel(source, options.schedule));
     trial->scheduling = channel.values.segment(std::llround(trial->from_s / trial->sample_time), trial->samples());
     if (!trial->scheduling.allFinite()) {
@@ -256,6 +271,7 @@ Result<std::vector<ExplorationTrial>> named_trials(std::span<const Recording> re
     trials.push_back(std::move(trial));
   }
   if (trials.empty()) return bad_usage("no recording was given");
+  MBK_TRY(scale_muscles(trials, options.emg.mvc, options.schedule, options.emg.processing));
   return trials;
 }
 

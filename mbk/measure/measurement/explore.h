@@ -40,8 +40,9 @@ struct ExploreOptions {
   explore::PlateauOptions plateau;  ///< of a reference of ramps and holds
   explore::ReachOptions reaches;    ///< of recordings of reaches
   explore::EmgOptions emg;
+  std::vector<std::string> muscles;     ///< EMG channels that are a path of the force, or the schedule
   explore::StretchOptions stretch;      ///< of stretches at constant velocity
-  std::string schedule;                 ///< channel that M, B and K are followed over; empty: time
+  std::string schedule;                 ///< channel that M, B and K are followed over, kCoContraction; empty: time
   std::string schedule_name;            ///< what it is called in the result; empty: as the channel
   std::optional<std::string> align;     ///< event, or "reference", since which time counts; absent: the first sample
   std::optional<double> after_onset_s;  ///< M, B and K from so long after each onset of the reference; absent: not

@@ -99,6 +99,7 @@ struct EmgDirectionResponse {
 /// One EMG channel.
 struct EmgChannelEstimate {
   std::string name;
+  std::string unit;    ///< "V", or "" where the recording does not say: amplitudes below are then in its numbers
   bool usable = true;  ///< false: the channel was not analysed; the findings say why
   std::vector<EmgFinding> findings;
   double background = 0;                         ///< mean over all perturbations [V]

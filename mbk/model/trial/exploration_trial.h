@@ -37,7 +37,10 @@ struct ExplorationTrial {
   std::optional<double> recorded_handle_mass;  ///< [kg] beyond the force sensor, as stated in the recording
   Vector scheduling;                           ///< N, of the scheduling channel of M, B and K; empty if none was named
   SignalLabel scheduling_label;
-  std::vector<Event> events;  ///< on the clock of from_s
+  Matrix muscles;  ///< N×m, rectified EMG of the muscles that were asked for, over that of MVC or their mean
+  std::vector<std::string> muscle_names;  ///< m, channels
+  std::vector<std::string> muscle_units;  ///< m, "MVC" or "mean"
+  std::vector<Event> events;              ///< on the clock of from_s
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
   [[nodiscard]] Index samples() const { return input.rows(); }

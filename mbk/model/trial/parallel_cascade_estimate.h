@@ -54,6 +54,38 @@ struct SecondOrderReflex {
   double p_value = 1;        ///< VAF of the response by this model
 };
 
+/// A muscle of the EMG path.
+struct EmgMuscle {
+  std::string channel;
+  std::string unit;          ///< of its EMG: "MVC" or "mean", the mean of the recordings
+  std::vector<Margin> gain;  ///< n, −F_h at a steady EMG of 1 [N or N·m]: Σ k T over all lags
+};
+
+/// Force that EMG explains, axis by axis.
+struct EmgShares {
+  ExplainedForce intrinsic_and_emg;  ///< fitted together, without the reflex path
+  ExplainedForce all;                ///< with the reflex path; the same where there is none
+  ExplainedForce emg_path;           ///< of `all`, alone
+};
+
+/// Share of the power of −F_h that linear responses explain, in bands: multiple coherence, corrected for what as many
+/// signals without any relation explain, weighted by the power of the force.
+struct CoherenceBand {
+  double from_hz = 0, to_hz = 0;
+  Vector motion, motion_and_emg;  ///< n, in [0, 1]
+};
+
+/// The rectified EMG e of muscles as a third path, −F_h(t) = … + Σ_m Σ_{0 ≤ l ≤ 0.5 s} k_m(l) e_m(t − l) T.
+struct EmgPath {
+  std::vector<EmgMuscle> muscles;  ///< m
+  double memory = 0;               ///< last lag [s]
+  bool explains = false;           ///< the force is predicted better with EMG
+  std::string why;                 ///< in words
+  double p_value = 1;              ///< of EMG that adds nothing to the other paths
+  std::vector<EmgShares> shares;   ///< n
+  std::vector<CoherenceBand> coherence;
+};
+
 /// Force as the sum of an intrinsic path, linear in motion, and a reflex path, which responds to stretch in one
 /// direction after a delay:
 ///   −F_h(t) = Σ_l h(l) x(t − l) T + Σ_l g(l) N(v⁺(t − l)) T + c,   v⁺ = max(eᵀẋ, 0)
@@ -87,6 +119,7 @@ struct ParallelCascadeEstimate {
   ResponseModel intrinsic_model;                  ///< M, B and K of the intrinsic path
   // Always:
   std::vector<PathShares> shares;  ///< n; without a reflex only the intrinsic path
+  std::optional<EmgPath> emg;      ///< where muscles were named
 };
 
 }  // namespace mbk

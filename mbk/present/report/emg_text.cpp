@@ -70,7 +70,9 @@ std::string emg_text(const EmgEstimate& found, Motion motion) {
     if (!channel.usable) {
       head += ": not analysed";
     } else {
-      head += fmt::format(": background {:.3g} µV", 1e6 * channel.background);
+      head += channel.unit == "V"
+                  ? fmt::format(": background {:.3g} µV", 1e6 * channel.background)
+                  : fmt::format(": background {:.3g} (the recording states no unit)", channel.background);
       if (channel.mvc) head += fmt::format(", {:.1f} % of MVC", 100.0 * channel.background / *channel.mvc);
     }
     text += "\n" + head + "\n";

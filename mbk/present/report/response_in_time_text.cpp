@@ -54,6 +54,39 @@ std::string direction_name(const Vector& direction) {
   return fmt::format("{:.0f}°", kDegrees * std::atan2(direction[1], direction[0]));
 }
 
+/// Numbers for the axes, "0.93" or "0.93, 0.88".
+std::string list_of(const Vector& values) {
+  std::string list;
+  for (const double value : values) list += (list.empty() ? "" : ", ") + fmt::format("{:.2f}", value);
+  return list;
+}
+
+void add_emg_path(const EmgPath& emg, const ParallelCascadeEstimate& found, Motion motion,
+                  std::vector<std::vector<std::string>>& rows) {
+  rows.push_back({"EMG", (emg.explains ? "explains force: " : "not shown to explain force: ") + emg.why});
+  for (std::size_t i = 0; i < emg.shares.size(); ++i) {
+    const EmgShares& one = emg.shares[i];
+    const bool reflex = found.found == DelayedResponse::reflex;
+    rows.push_back({"VAF" + axis_name(i, found.axes),
+                    fmt::format("intrinsic and EMG {}{}; EMG path {}", vaf(one.intrinsic_and_emg),
+                                reflex ? fmt::format(", with reflex {}", vaf(one.all)) : "", vaf(one.emg_path))});
+  }
+  for (const EmgMuscle& muscle : emg.muscles) {
+    if (muscle.gain.empty()) continue;
+    std::string gains;
+    for (const Margin& one : muscle.gain) {
+      gains += (gains.empty() ? "" : ", ") + with_interval(one.value, one.half_width);
+    }
+    rows.push_back(
+        {muscle.channel, fmt::format("{} {} at an EMG of 1 {}", gains, units_of(motion).force, muscle.unit)});
+  }
+  for (const CoherenceBand& band : emg.coherence) {
+    rows.push_back({fmt::format("{:g} to {:g} Hz", band.from_hz, band.to_hz),
+                    fmt::format("coherence with motion {}, with motion and EMG {}", list_of(band.motion),
+                                list_of(band.motion_and_emg))});
+  }
+}
+
 }  // namespace response_in_time
 
 std::string impulse_response_text(const ImpulseResponseEstimate& found, Motion motion) {
@@ -119,6 +152,7 @@ std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion m
                                                             vaf(one.intrinsic_path), vaf(one.reflex_path))});
     }
   }
+  if (found.emg) add_emg_path(*found.emg, found, motion, rows);
   if (!reflex) return text + table(rows);
   const std::string unit = units_of(motion).damping;
   rows.push_back({"direction", direction_name(found.direction) + " stretch"});

@@ -1,11 +1,13 @@
 #include "mbk/present/request/explore_request.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mbk/base/core/units.h"
 #include "mbk/files/recording/channel_table.h"
+#include "mbk/measure/measurement/muscles.h"
 #include "mbk/present/request/number_of.h"
 #include "mbk/present/request/signal_names.h"
 #include "mbk/present/request/stage_tables.h"
@@ -13,13 +15,26 @@
 namespace mbk::request {
 namespace {
 
+/// The muscles, and the schedule where it is made of their EMG.
+void name_muscles(const ExploreRequest& request, measurement::ExploreOptions& options) {
+  const auto add = [&](const std::string& channel) {
+    if (std::ranges::find(options.muscles, channel) == options.muscles.end()) options.muscles.push_back(channel);
+  };
+  for (const std::string& name : request.muscles) add(explore::emg_channel_of(name));
+  const bool muscle = explore::is_emg({.name = request.schedule});
+  if (muscle) add(request.schedule);
+  if (muscle || request.schedule == measurement::kCoContraction) options.schedule = request.schedule;
+}
+
 /// The schedule, and other signals than motion and force, where they are named.
 Result<void> name_signals(ExploreRequest& request, measurement::ExploreOptions& options) {
-  const SignalName schedule{request.schedule, "schedule", options.schedule, nullptr};
+  name_muscles(request, options);
+  const std::string recorded = options.schedule.empty() ? request.schedule : "";
+  const SignalName schedule{recorded, "schedule", options.schedule, nullptr};
   if (request.input.empty() && request.output.empty() && request.reference.empty()) {
-    const bool is_channel = request.reading.channels.empty() && !recording::kinds_called(request.schedule).empty();
+    const bool is_channel = request.reading.channels.empty() && !recording::kinds_called(recorded).empty();
     if (!is_channel) return place_signals(request.reading, {&schedule, 1});
-    options.schedule = request.schedule;  // and all other channels by their names
+    options.schedule = recorded;  // and all other channels by their names
     return {};
   }
   if (request.input.empty() || request.output.empty()) {
@@ -110,9 +125,9 @@ Result<void> set_emg(const ExploreRequest& request, explore::EmgOptions& emg) {
       return bad_usage("--mvc: " + quoted(text) + " is not MUSCLE=V with a positive voltage",
                        "for example --mvc biceps=0.0012");
     }
-    const std::string muscle = text.substr(0, at);
-    emg.mvc[muscle.starts_with("emg_") ? muscle : "emg_" + muscle] = *volts;
+    emg.mvc[explore::emg_channel_of(text.substr(0, at))] = *volts;
   }
+  if (request.emg_envelope_hz) emg.processing.envelope_hz = *request.emg_envelope_hz;
   if (emg.processing.envelope_rms_s > 0.0) emg.processing.envelope_hz = 0.0;
   return {};
 }
@@ -122,17 +137,23 @@ OptionTable<ExploreRequest> emg_table() {
   const auto processing = [](auto& request) -> auto& {
     return request.options.emg.processing;
   };
-  table.group("EMG (--only emg)")
+  table.group("EMG (--only emg, --muscles)")
+      .add({.name = "--muscles",
+            .value = "NAME,...",
+            .help = "muscles, such as biceps,triceps, whose EMG is a third part of the force beside the intrinsic and "
+                    "the reflex one, and whose co-contraction can be the --schedule",
+            .check = not_empty(),
+            .takes_several = true},
+           &ExploreRequest::muscles)
       .add({.name = "--emg-band",
             .value = "LOW,HIGH",
             .help = "band of the EMG, in Hz; zero-phase Butterworth filter of order 4 (default: 20,450)",
             .check = positive(),
             .takes_several = true},
            &ExploreRequest::emg_band)
-      .add(
-          {"--emg-envelope", "HZ", "cut-off of the zero-phase low-pass for the envelope shown, in Hz (default: 50)",
-           positive()},
-          [processing](auto& request) -> auto& { return processing(request).envelope_hz; })
+      .add({"--emg-envelope", "HZ",
+            "cut-off of the zero-phase low-pass for the envelope, in Hz (default: 50; of a schedule 2)", positive()},
+           &ExploreRequest::emg_envelope_hz)
       .add(
           {.name = "--emg-rms",
            .value = "MS",
@@ -243,9 +264,8 @@ const OptionTable<ExploreRequest>& explore_table() {
             stretch_table(), [](auto& request) -> auto& { return request.options.stretch; })
         .group(in_time)
         .add({"--schedule", "NAME",
-              "follow M, B and K over this channel, column, row or variable, such as an angle or a co-contraction "
-              "level, "
-              "instead of over time",
+              "follow M, B and K over this channel, column, row or variable, such as an angle, instead of over time; "
+              "over co-contraction, of two --muscles; or over the envelope of EMG, such as emg_biceps",
               not_empty()},
              &ExploreRequest::schedule)
         .add(
@@ -269,10 +289,12 @@ Result<measurement::ExploreOptions> explore_options(ExploreRequest& request) {
   options.preprocess.axes = request.reading.options.axes;
   options.reaches.from_s = options.plateau.from_s;
   options.reaches.to_s = options.plateau.to_s;
+  MBK_TRY(name_signals(request, options));
+  constexpr double kSlow = 2.0;  // [Hz], of a schedule: what changes faster is the noise of EMG
+  if (!options.muscles.empty() && !options.schedule.empty()) options.emg.processing.envelope_hz = kSlow;
   MBK_TRY(set_emg(request, options.emg));
   const bool emg = options.only == ExplorationPart::emg || options.only == ExplorationPart::stretch;
-  if (emg) request.reading.options.emg = recording::EmgReading::all;
-  MBK_TRY(name_signals(request, options));
+  if (emg || !options.muscles.empty()) request.reading.options.emg = recording::EmgReading::all;
   if (options.schedule == "schedule") options.schedule_name = shown_name(request.schedule);
   return options;
 }

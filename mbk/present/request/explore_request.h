@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct ExploreRequest {
   std::vector<std::string> emg_band;               ///< low and high [Hz]
   std::vector<std::string> emg_windows;            ///< rising times [ms]
   std::vector<std::string> mvc;                    ///< "biceps=0.0012" [V]
+  std::vector<std::string> muscles;                ///< "biceps" or "emg_biceps"
+  std::optional<double> emg_envelope_hz;
 };
 
 /// Every option that a result depends on, but FILE.

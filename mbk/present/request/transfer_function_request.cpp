@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/present/request/number_of.h"
 #include "mbk/present/request/signal_names.h"
 #include "mbk/present/request/stage_tables.h"
 
@@ -19,14 +20,6 @@ std::optional<Index> take_number(std::string_view& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc()) return std::nullopt;
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return value;
-}
-
-/// The number that `text` is.
-std::optional<double> number_in(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
 
@@ -189,7 +182,7 @@ Result<measurement::TransferFunctionMeasurement> transfer_function_options(Trans
   }
   fit.find_delay = request.delay == "auto";
   if (!fit.find_delay) {
-    const auto delay = number_in(request.delay);
+    const auto delay = number_of(request.delay);
     if (!delay || !(*delay >= 0.0 && *delay < 1e6)) {
       return bad_usage(
           fmt::format("--delay {} is neither 'auto' nor a non-negative number of seconds", mbk::quoted(request.delay)));
@@ -199,7 +192,7 @@ Result<measurement::TransferFunctionMeasurement> transfer_function_options(Trans
   if (request.sample_rate == "recorded") {
     options.sample_rate_hz = 0.0;
   } else if (!request.sample_rate.empty()) {
-    options.sample_rate_hz = number_in(request.sample_rate);
+    options.sample_rate_hz = number_of(request.sample_rate);
     if (!options.sample_rate_hz || !(*options.sample_rate_hz > 0.0)) {
       return bad_usage(fmt::format("--sample-rate {} is neither 'recorded' nor a positive rate in Hz",
                                    mbk::quoted(request.sample_rate)));

@@ -59,20 +59,23 @@ void describe(Fields<EmgDirectionResponse>& fields) {
   fields.type("EmgDirectionResponse", "One muscle after perturbations in one direction.");
   fields.add("direction", &EmgDirectionResponse::direction, "unit vector");
   fields.add("trials", &EmgDirectionResponse::trials);
-  fields.add("background", &EmgDirectionResponse::background, "mean rectified EMG before the onset [V]");
+  fields.add("background", &EmgDirectionResponse::background,
+             "mean rectified EMG before the onset [unit of the channel]");
   fields.add("windows", &EmgDirectionResponse::windows, "in the order of `windows` of the estimate");
   fields.add("latency", &EmgDirectionResponse::latency, "null: no increase, or none with a clear beginning");
   fields.add_rounded("curve", &EmgDirectionResponse::curve, kDigits,
-                     "trial mean of the envelope at `curve_time_s` [V]");
+                     "trial mean of the envelope at `curve_time_s` [unit of the channel]");
 }
 
 void describe(Fields<EmgChannelEstimate>& fields) {
   fields.type("EmgChannel", "One EMG channel.");
   fields.add("name", &EmgChannelEstimate::name);
+  fields.add("unit", &EmgChannelEstimate::unit,
+             "V; empty where the recording states none: amplitudes are then in its numbers");
   fields.add("usable", &EmgChannelEstimate::usable);
   fields.add("findings", &EmgChannelEstimate::findings);
-  fields.add("background", &EmgChannelEstimate::background, "mean rectified EMG before the onsets [V]");
-  fields.add("mvc", &EmgChannelEstimate::mvc, "mean rectified EMG of a maximal voluntary contraction, if given [V]");
+  fields.add("background", &EmgChannelEstimate::background, "mean rectified EMG before the onsets [unit]");
+  fields.add("mvc", &EmgChannelEstimate::mvc, "mean rectified EMG of a maximal voluntary contraction, if given [unit]");
   fields.add("directions", &EmgChannelEstimate::directions);
 }
 

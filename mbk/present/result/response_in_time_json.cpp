@@ -128,6 +128,40 @@ void describe(Fields<SecondOrderReflex>& fields) {
   fields.add("p", &SecondOrderReflex::p_value, "p-value if this model is sufficient");
 }
 
+void describe(Fields<EmgMuscle>& fields) {
+  fields.type("EmgMuscle");
+  fields.add("channel", &EmgMuscle::channel);
+  fields.add("unit", &EmgMuscle::unit, "of its EMG: MVC, or mean of the recordings");
+  fields.add("gain", &EmgMuscle::gain, "-F(t) at a steady EMG of 1, for each axis [N or N.m]");
+}
+
+void describe(Fields<EmgShares>& fields) {
+  fields.type("EmgShares");
+  fields.add("intrinsic_and_emg", &EmgShares::intrinsic_and_emg, "fitted together, without the reflex path");
+  fields.add("all", &EmgShares::all, "intrinsic, reflex if one was found, and EMG");
+  fields.add("emg_path", &EmgShares::emg_path, "of `all`, alone");
+}
+
+void describe(Fields<CoherenceBand>& fields) {
+  fields.type("CoherenceBand",
+              "Multiple coherence in a band: the share of the power of -F that linear responses explain, corrected for "
+              "what unrelated signals explain.");
+  fields.add("band_hz", [](const CoherenceBand& band) { return std::pair(band.from_hz, band.to_hz); });
+  fields.add("motion", &CoherenceBand::motion, "for each axis");
+  fields.add("motion_and_emg", &CoherenceBand::motion_and_emg, "for each axis");
+}
+
+void describe(Fields<EmgPath>& fields) {
+  fields.type("EmgPath", "The rectified EMG of muscles as a third path of the force, present with --muscles.");
+  fields.add("explains", &EmgPath::explains, "the force is predicted better with EMG");
+  fields.add("why", &EmgPath::why);
+  fields.add("p", &EmgPath::p_value, "p-value of EMG that adds nothing to the other paths");
+  fields.add("memory_s", &EmgPath::memory, "last lag");
+  fields.add("muscles", &EmgPath::muscles);
+  fields.add("shares", &EmgPath::shares, "for each axis");
+  fields.add("coherence", &EmgPath::coherence);
+}
+
 void describe(Fields<ParallelCascadeEstimate>& fields) {
   using Found = ParallelCascadeEstimate;
   using From = const Found&;
@@ -173,6 +207,7 @@ void describe(Fields<ParallelCascadeEstimate>& fields) {
   };
   fields.group("reflex", reflex).only_if(has_reflex);
   fields.add_if(has_reflex, "intrinsic_model", &Found::intrinsic_model);
+  fields.add("emg", &Found::emg);
 }
 
 namespace {

@@ -58,6 +58,17 @@ void judge(Change& change, const Course& course, const DetectableChange& error) 
   if (change.heavy_tails && change.verdict == ChangeVerdict::beyond_error) change.verdict = ChangeVerdict::uncertain;
 }
 
+Change change_between(const SessionMean& first, const SessionMean& last, const Course& course, bool axial,
+                      const DetectableChange& error) {
+  Change change{.first_session = first.session,
+                .last_session = last.session,
+                .first = first.mean,
+                .last = last.mean,
+                .difference = difference_of(last.mean, first.mean, axial)};
+  judge(change, course, error);
+  return change;
+}
+
 /// The minimal detectable change by everyone else.
 DetectableChange without(std::int64_t participant, const store::OutcomeColumns& columns,
                          const store::OutcomeColumn& column, const std::string& condition) {
@@ -95,13 +106,10 @@ Course course_of(std::int64_t participant, const SessionValues& values, bool axi
     sum += one.mean;
     variance += error.session + error.trial / one.results;
     if (&one == &first) continue;
-    Change change{.first_session = first.session,
-                  .last_session = one.session,
-                  .first = first.mean,
-                  .last = one.mean,
-                  .difference = difference_of(one.mean, first.mean, axial)};
-    judge(change, course, error);
-    course.changes.push_back(change);
+    course.changes.push_back(change_between(first, one, course, axial, error));
+  }
+  if (course.sessions.size() > 2) {
+    course.latest = change_between(*(course.sessions.end() - 2), course.sessions.back(), course, axial, error);
   }
   const auto count = static_cast<double>(course.sessions.size());
   course.mean = sum / count;
@@ -195,17 +203,18 @@ std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns, const 
     one.why_unknown = error.why_unknown;
     for (const auto& [number, values] : values_of(columns, *column, one.condition, participant)) {
       Course course = course_of(number, values, one.axial, error);
+      const auto large = [](const Change& change) { return std::abs(change.difference) > change.mdc; };
       const bool stands_out = one.repeated_participants <= kMaxComparedPeople &&
-                              std::ranges::any_of(course.changes, [](const Change& change) {
-                                return std::abs(change.difference) > change.mdc;
-                              });
+                              (std::ranges::any_of(course.changes, large) || (course.latest && large(*course.latest)));
       const DetectableChange others =
           stands_out ? without(number, columns, *column, one.condition) : DetectableChange();
       if (stands_out && others.known()) {
-        for (Change& change : course.changes) {
+        const auto again = [&](Change& change) {
           judge(change, course, others);
           change.by_others = true;
-        }
+        };
+        std::ranges::for_each(course.changes, again);
+        if (course.latest) again(*course.latest);
       }
       one.courses.push_back(std::move(course));
     }

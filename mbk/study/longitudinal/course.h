@@ -54,6 +54,7 @@ struct Course {
   std::int64_t participant = 0;
   std::vector<SessionMean> sessions;   ///< by their numbers
   std::vector<Change> changes;         ///< each later session against the first
+  std::optional<Change> latest;        ///< the last session against the one before, with three sessions or more
   double mean = kNaN;                  ///< of the sessions' means
   Interval interval95 = {kNaN, kNaN};  ///< of that, by the variances of all people; NaN: unknown
 };

@@ -111,6 +111,24 @@ TEST(Courses, WhoDidNotChangeIsSeldomSaidToHave) {
   EXPECT_LT(more, 0.1 * kStudies * kPeople);
 }
 
+TEST(Courses, LastSessionIsAlsoComparedWithTheOneBefore) {
+  const auto value = [](int p, int s, int t) {
+    return 100.0 + 10.0 * p + scatter(p, s, t) + (p == 3 && s == 3 ? 80.0 : 0.0);
+  };
+  const auto all = courses_of(study_of(8, 3, 2, "K_xx", value));
+  for (const Course& one : all.at(0).courses) {
+    ASSERT_TRUE(one.latest);
+    EXPECT_EQ(one.latest->first_session, 2);
+    EXPECT_EQ(one.latest->last_session, 3);
+    EXPECT_DOUBLE_EQ(one.latest->difference, one.sessions[2].mean - one.sessions[1].mean);
+    EXPECT_EQ(one.latest->by_others, one.changes[1].by_others);
+    if (one.participant == 3) {
+      EXPECT_EQ(one.latest->verdict, ChangeVerdict::beyond_error);
+    }
+  }
+  EXPECT_FALSE(courses_of(study_of(8, 2, 2, "K_xx", value)).at(0).courses.at(0).latest);
+}
+
 TEST(Courses, DetectableChangeFollowsFromVariances) {
   const auto columns =
       study_of(10, 3, 2, "K_xx", [](int p, int s, int t) { return 100.0 + 10.0 * p + scatter(p, s, t); });

@@ -50,6 +50,7 @@ void describe(Fields<Course>& fields) {
   fields.add("interval95", &Course::interval95, "from the variances of all people; null: unknown");
   fields.add("sessions", &Course::sessions);
   fields.add("changes", &Course::changes, "each later session against the first");
+  fields.add("latest", &Course::latest, "the last session against the one before, with three sessions or more");
 }
 
 void describe(Fields<OutcomeCourses>& fields) {
@@ -64,6 +65,98 @@ void describe(Fields<OutcomeCourses>& fields) {
   fields.add("mean", &OutcomeCourses::mean, "of the people's means; null in the report of one participant");
   fields.add("interval95", &OutcomeCourses::interval95);
   fields.add("participants", &OutcomeCourses::courses);
+}
+
+void describe(Fields<NormalRange>& fields) {
+  fields.type("NormalRange", "Of the controls of the study.");
+  fields.add("controls", &NormalRange::controls, "people whose numbers it is from");
+  fields.add("mean", &NormalRange::mean, "null: fewer than five controls");
+  fields.add("range95", &NormalRange::range95,
+             "prediction interval of one further control, by Student's t; null: fewer than five controls");
+}
+
+void describe(Fields<OutcomeRange>& fields) {
+  fields.type("OutcomeRange", "One outcome of the participant's last session beside the controls in theirs.");
+  fields.add("condition", &OutcomeRange::condition);
+  fields.add("outcome", &OutcomeRange::outcome);
+  fields.add("unit", &OutcomeRange::unit);
+  fields.add("session", &OutcomeRange::session);
+  fields.add("results", &OutcomeRange::results);
+  fields.add("value", &OutcomeRange::value, "mean of the session's results");
+  fields.add("normal", &OutcomeRange::normal);
+  fields.add("without", &OutcomeRange::without,
+             "controls with a result under this condition that lacks this number; the range does not tell of them");
+  fields.add("verdict", &OutcomeRange::verdict, "where the value is beside range95");
+}
+
+void describe(Fields<SideDifference>& fields) {
+  fields.type("SideDifference", "One outcome of the participant, left less right, in the last session with both.");
+  fields.add("left_condition", &SideDifference::left_condition);
+  fields.add("right_condition", &SideDifference::right_condition);
+  fields.add("outcome", &SideDifference::outcome);
+  fields.add("unit", &SideDifference::unit);
+  fields.add("session", &SideDifference::session);
+  fields.add("left", &SideDifference::left, "mean of the session's results");
+  fields.add("right", &SideDifference::right);
+  fields.add("difference", &SideDifference::difference, "left − right");
+  fields.add("error95", &SideDifference::error, "95 % of errors of the difference are smaller; null: unknown");
+  fields.add("error95_interval", &SideDifference::error95, "null unless error_basis is sessions");
+  fields.add("error_basis", &SideDifference::basis,
+             "sessions: error95 is from how the difference varies between sessions of other people; recordings: from "
+             "the standard errors of the results, which do not tell of that; unknown");
+  fields.add_unless_empty("why_unknown", &SideDifference::why_unknown,
+                          "why the variation between sessions is unknown, as a clause");
+  fields.add("heavy_tails", &SideDifference::heavy_tails,
+             "other people's differences have heavier tails than normal errors: error95_interval is not valid, and no "
+             "difference is beyond-error");
+  fields.add("verdict", &SideDifference::verdict,
+             "beyond-error: the sides differ by more than the upper end of error95_interval, without heavy_tails; "
+             "uncertain: by more than error95; within-error: by at most error95; unknown: error_basis is not sessions");
+  fields.add("normal", &SideDifference::normal, "of left − right of the controls");
+  fields.add("range_verdict", &SideDifference::range_verdict, "where the difference is beside normal.range95");
+}
+
+void describe(Fields<StretchCurve>& fields) {
+  fields.type("StretchCurve", "Resisting torque over position at one speed.");
+  fields.add_rounded("speed", &StretchCurve::speed, document::kDigits, "[position_unit/s]");
+  fields.add_rounded("torque", &StretchCurve::torque, document::kDigits, "of the participant, at the positions");
+  fields.add("controls", &StretchCurve::controls,
+             "who were stretched at this speed (within 10 %) over at least 80 % of the positions");
+  fields.add("above", &StretchCurve::above,
+             "share of the positions with a range at which torque is above it; null: there is no range");
+  fields.add("below", &StretchCurve::below, "the same, below it");
+  fields.add_rounded("mean", &StretchCurve::mean, document::kDigits,
+                     "of the controls; null: fewer than five, or one of them lacks the position");
+  fields.add_rounded("low95", &StretchCurve::low95, document::kDigits,
+                     "prediction interval of one further control at each position, by Student's t");
+  fields.add_rounded("high95", &StretchCurve::high95, document::kDigits);
+}
+
+void describe(Fields<StretchCurves>& fields) {
+  fields.type("StretchCurves", "Stretches of the participant's last session beside those of the controls in theirs.");
+  fields.add("condition", &StretchCurves::condition);
+  fields.add("session", &StretchCurves::session);
+  fields.add("results", &StretchCurves::results, "recordings");
+  fields.add("direction", &StretchCurves::direction, "1: the position increases, −1: it decreases");
+  fields.add("position_unit", &StretchCurves::position_unit);
+  fields.add("torque_unit", &StretchCurves::torque_unit);
+  fields.add_rounded("position", &StretchCurves::position, document::kDigits);
+  fields.add("speeds", &StretchCurves::speeds, "increasing");
+}
+
+void describe(Fields<Controls>& fields) {
+  fields.type("StudyControls", "People of the study with whom the participant is compared.");
+  fields.add("name", &Controls::name);
+  fields.add("participants", &Controls::people, "with a usable result, without the participant");
+  fields.add("is_one", &Controls::is_one, "the participant is one of them, and is left out of the ranges");
+}
+
+void describe(Fields<ParticipantComparison>& fields) {
+  fields.add("controls", &ParticipantComparison::controls, "of --group");
+  fields.add("stretches", &ParticipantComparison::stretches);
+  fields.add("ranges", &ParticipantComparison::ranges, "empty without controls");
+  fields.add("sides", &ParticipantComparison::sides,
+             "of conditions whose names differ in the words left and right alone");
 }
 
 namespace {
@@ -265,6 +358,7 @@ void describe(Fields<ParticipantPage>& fields) {
         return people.size();
       },
       "with a usable result");
+  fields.with([](From view) -> const ParticipantComparison& { return view.page.report.comparison; });
   describe_tail(fields);
 }
 
@@ -276,7 +370,7 @@ void add_schemas(document::Schemas& schemas) {
 }
 
 std::string primary_outcome(const store::OutcomeColumns& columns) {
-  for (const char* name : {"stiffness_lambda_max", "K", "K_xx"}) {
+  for (const char* name : {"stiffness_lambda_max", "K", "K_xx", "stretch_increasing_slope"}) {
     if (std::ranges::find(columns.outcomes, name, &store::OutcomeColumn::name) != columns.outcomes.end()) return name;
   }
   return columns.outcomes.empty() ? "" : columns.outcomes.front().name;
@@ -302,6 +396,30 @@ Result<StudyReport> study_report(store::StudyList list, store::OutcomeColumns co
   report.columns = std::move(columns);
   report.statistics = std::move(statistics);
   return report;
+}
+
+Result<ParticipantComparison> compare_participant(const store::Store& study, const StudyReport& report,
+                                                  std::int64_t participant,
+                                                  const std::optional<statistics::PeopleGroup>& controls) {
+  ParticipantComparison made;
+  std::set<std::int64_t> people;
+  if (controls) {
+    const auto belongs = [&](std::int64_t number) {
+      return std::ranges::find(controls->participants, number) != controls->participants.end();
+    };
+    for (const store::TrialRow& trial : report.columns.trials) {
+      if (trial.participant != participant && belongs(trial.participant)) people.insert(trial.participant);
+    }
+    if (people.empty()) {
+      return bad_usage(fmt::format("nobody else of the group '{}' has a usable result", controls->name),
+                       "'mbk study list' shows the participants; example: --group controls=21-30");
+    }
+    made.controls = {controls->name, static_cast<int>(people.size()), belongs(participant)};
+    made.ranges = outcome_ranges(report.columns, participant, people);
+  }
+  made.stretches = MBK_TRY(stretch_curves(study, report.list, participant, people));
+  made.sides = side_differences(report.columns, participant, people);
+  return made;
 }
 
 std::string study_report_json(const StudyReport& report) {

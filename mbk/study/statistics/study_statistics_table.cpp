@@ -97,6 +97,28 @@ const Repeated* repeated_of(const StudyStatistics& statistics, const OutcomeSumm
   return found != nullptr && found->between_sessions.support == Support::enough ? &found->between_sessions : nullptr;
 }
 
+/// Of one trial by one rater in one session; nullptr where there are no raters, or too few.
+const reliability::Generalizability* one_rater(const OutcomeReliability* found) {
+  if (found == nullptr || !found->raters || found->raters->of_numbers.empty()) return nullptr;
+  return &found->raters->of_numbers.front();
+}
+
+void add_rater(PaperRow& row, const reliability::Generalizability* one) {
+  if (one == nullptr) {
+    row.cells.insert(row.cells.end(), 3, no_number());
+    return;
+  }
+  const auto& [low, high] = one->absolute95;
+  row.cells.push_back(std::isfinite(one->absolute) ? PaperCell{share(one->absolute), number} : no_number());
+  row.cells.push_back(std::isfinite(low) && std::isfinite(high)
+                          ? PaperCell{fmt::format("[{}, {}]", share(low), share(high)), number}
+                          : no_number());
+  const double mdc = one->absolute_error.mdc95;
+  row.cells.push_back(std::isfinite(mdc)
+                          ? PaperCell{fmt::format("{:.{}f}", mdc, decimals(one->absolute_error.sem, 2)), number}
+                          : no_number());
+}
+
 /// Recordings of the condition that the outcome does not include.
 std::int64_t excluded(const store::StudyList& list, const OutcomeSummary& one) {
   return std::ranges::count_if(list.recordings,
@@ -138,8 +160,9 @@ std::string note_of(const store::StudyList& list, std::span<const OutcomeSummary
       "n: participants (trials), each participant with the mean of their usable trials; SD between participants. ";
   std::vector<const Repeated*> repeated;
   std::vector<std::string> heavy;
-  bool eigenvalues = false;
+  bool eigenvalues = false, rated = false;
   for (const OutcomeSummary& one : outcomes) {
+    rated = rated || one_rater(found_reliability(statistics, one)) != nullptr;
     eigenvalues = eigenvalues || one.outcome.find("_lambda_") != std::string::npos;
     if (const Repeated* const sessions = repeated_of(statistics, one)) repeated.push_back(sessions);
     const OutcomeReliability* const found = found_reliability(statistics, one);
@@ -155,6 +178,11 @@ std::string note_of(const store::StudyList& list, std::span<const OutcomeSummary
         "ICC(A,1): two-way, absolute agreement, one session (McGraw & Wong, 1996), from the means of {}; SEM: standard "
         "error of measurement (agreement); MDC95: minimal detectable change at 95 % confidence. ",
         people_and_sessions(repeated));
+  }
+  if (rated) {
+    text +=
+        "Phi: dependability of one trial by any one rater in one session (people x raters x sessions, restricted "
+        "maximum likelihood), and MDC95 of that trial; other columns take results of different raters as trials. ";
   }
   text += fmt::format(
       "Excluded: recordings of the condition without this outcome. Of {}, {} usable, {} not usable, {} could not be "
@@ -175,6 +203,8 @@ PaperTable table_of(const store::StudyList& list, std::span<const OutcomeSummary
                     const StudyStatistics& statistics) {
   const bool reliable =
       std::ranges::any_of(outcomes, [&](const OutcomeSummary& one) { return repeated_of(statistics, one) != nullptr; });
+  const bool rated = std::ranges::any_of(
+      outcomes, [&](const OutcomeSummary& one) { return one_rater(found_reliability(statistics, one)) != nullptr; });
   const bool blocks = std::ranges::any_of(
       outcomes, [&](const OutcomeSummary& one) { return one.condition != outcomes.front().condition; });
   PaperTable table;
@@ -187,6 +217,11 @@ PaperTable table_of(const store::StudyList& list, std::span<const OutcomeSummary
   header.cells = {{"Outcome"}, {"Unit"}, {"n (trials)"}, {"Mean ± SD"}};
   if (reliable) {
     const std::vector<PaperCell> more = {{"ICC(A,1)"}, {"95 % CI"}, {"SEM"}, {"\\mathrm{MDC}_{95}", symbol}};
+    header.cells.insert(header.cells.end(), more.begin(), more.end());
+  }
+  if (rated) {
+    const std::vector<PaperCell> more = {
+        {"\\Phi", symbol}, {"95 % CI"}, {"\\mathrm{MDC}_{95,\\mathrm{rater}}", symbol}};
     header.cells.insert(header.cells.end(), more.begin(), more.end());
   }
   header.cells.push_back({"Excluded"});
@@ -203,6 +238,7 @@ PaperTable table_of(const store::StudyList& list, std::span<const OutcomeSummary
     row.cells = {name_cell(one.outcome), PaperCell{one.unit},
                  PaperCell{fmt::format("{} ({})", one.participants, one.results)}, mean_cell(one)};
     if (reliable) add_reliability(row, repeated_of(statistics, one));
+    if (rated) add_rater(row, one_rater(found_reliability(statistics, one)));
     row.cells.push_back({fmt::format("{}", excluded(list, one))});
   }
   return table;
@@ -229,13 +265,13 @@ std::string all_digits(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
-/// Of one trial by one rater in one session; empty where there are no raters, or too few.
+/// Empty where there are no raters, or too few.
 std::string rater_fields(const OutcomeReliability* found) {
-  if (found == nullptr || !found->raters || found->raters->of_numbers.empty()) return ",,,,,,";
-  const reliability::Generalizability& one = found->raters->of_numbers.front();
-  return fmt::format(",{},{},{},{},{},{}", found->raters->model.raters, all_digits(one.absolute),
-                     all_digits(one.absolute95.first), all_digits(one.absolute95.second),
-                     all_digits(one.absolute_error.sem), all_digits(one.absolute_error.mdc95));
+  const reliability::Generalizability* const one = one_rater(found);
+  if (one == nullptr) return ",,,,,,";
+  return fmt::format(",{},{},{},{},{},{}", found->raters->model.raters, all_digits(one->absolute),
+                     all_digits(one->absolute95.first), all_digits(one->absolute95.second),
+                     all_digits(one->absolute_error.sem), all_digits(one->absolute_error.mdc95));
 }
 
 }  // namespace summary_table

@@ -1,6 +1,6 @@
 // The report of mbk explore: a document of schema mbk.explore_report/1, drawn. Every number in it was computed by mbk.
 import type {
-  Distortion, Exploration, ExplorationReport, ExplainedForce, FrequencyResponseEstimate, ImpulseResponseEstimate,
+  Distortion, EmgPath, Exploration, ExplorationReport, ExplainedForce, FrequencyResponseEstimate, ImpulseResponseEstimate,
   ParallelCascadeEstimate, PeriodicFacts, Response, ResponseModel, SignalLabel, Value,
 } from "@mbk/shared/documents";
 import { facts, h, heading, svg, table } from "@mbk/shared/dom";
@@ -39,7 +39,8 @@ function unitsOf({ units }: Exploration): { response: string; M: string; B: stri
 }
 
 const ofForce = (result: Exploration): boolean => {
-  const output = result.frequency_response?.outputs[0]?.name ?? "";
+  if (!result.frequency_response) return Boolean(result.units);
+  const output = result.frequency_response.outputs[0]?.name ?? "";
   return output.startsWith("−force") || output === "−reaction";
 };
 
@@ -94,6 +95,9 @@ function reflexSentence(cascade: ParallelCascadeEstimate): string {
   }
 }
 
+const emgSentence = (emg: EmgPath): string =>
+  (emg.explains ? "EMG explains force that motion does not." : "EMG was not shown to explain force.");
+
 function summary(report: ExplorationReport): HTMLElement {
   const { result } = report;
   const said = verdict({ result });
@@ -102,6 +106,7 @@ function summary(report: ExplorationReport): HTMLElement {
     response?.periodic ? nonlinearity(response.periodic) : undefined,
     impulse ? modelSentence(impulse) : undefined,
     cascade ? reflexSentence(cascade) : undefined,
+    cascade?.emg ? emgSentence(cascade.emg) : undefined,
     result.time_course?.verdict === "changes" ? "The limb changes during the recording; results for the whole recording are averages." : undefined,
     ...toneSentences(result),
   ].filter((one): one is string => one !== undefined);
@@ -342,7 +347,8 @@ const directionName = (direction: Value[] | null): string => {
   return `${fixed((180 / Math.PI) * Math.atan2(direction[1] ?? 0, direction[0] ?? 0), 0)}°`;
 };
 
-function reflexSection({ result }: ExplorationReport): HTMLElement | undefined {
+function reflexSection(report: ExplorationReport): HTMLElement | undefined {
+  const { result } = report;
   const found = result.parallel_cascade;
   if (!found) return undefined;
   const section = (...children: (Node | string | undefined)[]): HTMLElement => h("section", { id: "reflex" }, heading(2, "Intrinsic and reflex force"), ...children);
@@ -382,7 +388,31 @@ function reflexSection({ result }: ExplorationReport): HTMLElement | undefined {
           pairsOf(result.axes).map((pair) => (pair ? `from ${pair[1]} to force ${pair[0]}` : "response")), unitsOf(result).response, "The passive response of the limb, too early to be a reflex."))
       : undefined,
     ...delayed,
-    found.intrinsic_model ? modelTable(found.intrinsic_model, unitsOf(result), "M, B and K of the intrinsic path; ± is half of the 95 % interval", "intrinsic") : undefined);
+    found.intrinsic_model ? modelTable(found.intrinsic_model, unitsOf(result), "M, B and K of the intrinsic path; ± is half of the 95 % interval", "intrinsic") : undefined,
+    ...emgOfForce(report));
+}
+
+/// The part of the force that EMG explains.
+function emgOfForce({ result }: ExplorationReport): (Node | string)[] {
+  const emg = result.parallel_cascade?.emg;
+  if (!emg) return [];
+  const axes = result.axes;
+  const gains = emg.muscles.flatMap((muscle) => muscle.gain.map((gain, k) => [
+    `${muscle.channel}${axes > 1 ? `, force${axisOf(axes, k)}` : ""}`,
+    data(gain.value, significant(gain.value, 3)), `[${significant(gain.interval95[0] ?? null, 3)}, ${significant(gain.interval95[1] ?? null, 3)}]`, muscle.unit]));
+  const shares = emg.shares.flatMap((one, k) => [
+    [`intrinsic and EMG${axisOf(axes, k)}`, percent(one.intrinsic_and_emg, "emg-intrinsic")],
+    ...(result.parallel_cascade?.reflex ? [[`with reflex${axisOf(axes, k)}`, percent(one.all, "emg-all")]] : []), [`EMG alone${axisOf(axes, k)}`, percent(one.emg_path, "emg-alone")]]);
+  const bands = emg.coherence.map((band) => [
+    `${plain(band.band_hz[0] ?? null)} to ${plain(band.band_hz[1] ?? null)} Hz`,
+    band.motion.map((share) => fixed(share ?? NaN, 2)).join(", "), band.motion_and_emg.map((share) => fixed(share ?? NaN, 2)).join(", ")]);
+  return [
+    heading(3, "EMG"),
+    h("p", {}, `${emgSentence(emg)} ${emg.why.charAt(0).toUpperCase()}${emg.why.slice(1)}.`),
+    ...(shares.length > 0 ? [table("Share of the force explained (VAF)", ["parts", "VAF"], shares, "numbers narrow")] : []),
+    ...(gains.length > 0 ? [table(`Force at a steady EMG of 1${result.units ? ` [${result.units.K === "N/m" ? "N" : "N·m"}]` : ""}`, ["muscle", "gain", "95 % interval", "1 is"], gains, "numbers narrow")] : []),
+    ...(bands.length > 0 ? [table("Multiple coherence with the force, corrected for chance", ["band", "motion", "motion and EMG"], bands, "numbers narrow")] : []),
+  ];
 }
 
 function provenance(result: Exploration): HTMLElement {

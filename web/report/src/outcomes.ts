@@ -25,9 +25,22 @@ const others: Record<string, string> = {
   excess_of_passivity: "excess of passivity",
 };
 
+const stretches: Record<string, string> = {
+  slope: "slope of resistance over speed",
+  torque: "resistance at the fastest speed",
+  rise: "rise of that slope within the stretch",
+  catch: "angle of catch at the fastest speed",
+  threshold: "threshold at rest",
+  work: "work of the loop at the fastest speed",
+};
+
 /** "stiffness_area" → "area of the stiffness ellipse" */
 export function outcomeName(name: string): string {
   if (others[name]) return others[name];
+  const [, way = "", stretch = ""] = /^stretch_(increasing|decreasing)_(.+)$/.exec(name) ?? [];
+  if (stretches[stretch]) return `${stretches[stretch]}${way === "decreasing" ? ", position decreasing" : ""}`;
+  const [, muscle = "", direction = "", response = ""] = /^emg_(.+)_direction(\d+)_(.+)$/.exec(name) ?? [];
+  if (muscle) return `${muscle.replaceAll("_", " ")}, direction ${direction}: ${response === "latency" ? "latency" : `${response.replaceAll("_", " ")} EMG over background`}`;
   const [first = "", ...rest] = name.split("_");
   const part = rest.join("_");
   const of = quantities[first] ? parts[part] : undefined;
@@ -39,6 +52,9 @@ export function outcomeName(name: string): string {
 
 /** What tables show first: eigenvalues and ellipses, then the elements; the others say how good a fit is, or where it was. */
 const ranked = (name: string): number => {
+  const stretch = /^stretch_(increasing|decreasing)_(.+)$/.exec(name);
+  if (stretch) return Object.keys(stretches).indexOf(stretch[2] ?? "") + (stretch[1] === "decreasing" ? 10 : 0);
+  if (/^emg_.+_direction\d+_/.test(name)) return 20;
   const order = ["stiffness", "damping", "inertia", "K", "B", "M"];
   const first = order.indexOf(name.split("_")[0] ?? "");
   if (first < 0) return 100;

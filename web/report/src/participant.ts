@@ -4,6 +4,7 @@ import type { OutcomeCourses, ParticipantReport, SessionChange } from "@mbk/shar
 import { facts, h, heading, table } from "@mbk/shared/dom";
 import { data } from "@mbk/shared/format";
 import { among, inOutcomeOrder, isFirst, isMain, outcomeName, percentOf, plainly, signed, withUnit } from "./outcomes";
+import { controlsSection, sidesSection } from "./controls";
 import { saveable } from "./picture";
 import { commonRange, courseLegend, coursePanel } from "./study_drawings";
 import { analysisText, conditionsOf, counted, coursesCsv, downloads, ellipseFigure, leftOutTable, ofCondition, sessionsOf, titleOf, verdictWords } from "./study_parts";
@@ -47,6 +48,14 @@ function othersThatChanged(primary: OutcomeCourses, courses: OutcomeCourses[]): 
   return [...sentence("beyond-error", "more than measurement error explains"), ...sentence("uncertain", "more than the minimal detectable change, which is itself uncertain")];
 }
 
+/** The last session beside the one before. */
+function latestText(change: SessionChange, one: OutcomeCourses): string {
+  const words: Record<SessionChange["verdict"], string> = {
+    "beyond-error": "more than measurement error explains", uncertain: "more than the minimal detectable change, which is itself uncertain",
+    "within-error": "no detectable change", unknown: "whether that is more than measurement error is not known" };
+  return `Since session ${change.first_session}, the one before: ${withUnit(moved(change), one.unit)}; ${words[change.verdict]}${change.mdc95 === null ? "" : ` (minimal detectable change ${withUnit(plainly(change.mdc95), one.unit)})`}.`;
+}
+
 /** What happened between the first session and the last, and whether that is more than error. */
 function statement(one: OutcomeCourses, courses: OutcomeCourses[], conditions: string[]): HTMLElement {
   const course = one.participants[0];
@@ -67,6 +76,7 @@ function statement(one: OutcomeCourses, courses: OutcomeCourses[], conditions: s
     ? `turned by ${withUnit(plainly(Math.abs(change.difference ?? 0)), one.unit)}`
     : `is ${size ? `${size.replace(/^[+−]/, "")} ` : ""}${higher ? "higher" : "lower"} than in session ${change.first_session}`;
   const same = change.difference === 0;
+  const latest = course.latest ? [h("p", { "data-name": "latest", "data-verdict": course.latest.verdict }, latestText(course.latest, one))] : [];
   const mdc = withUnit(plainly(change.mdc95), one.unit);
   const [low, high] = change.mdc95_interval.map((value) => among(value, change.mdc95)) as [string, string];
   const whose = change.by_others ? "; from all other people of the study" : "";
@@ -90,6 +100,7 @@ function statement(one: OutcomeCourses, courses: OutcomeCourses[], conditions: s
   return h("div", { class: "statement", "data-verdict": change.verdict, "data-condition": one.condition }, lead,
     h("p", { class: "said" }, said),
     ...othersThatChanged(one, courses),
+    ...latest,
     h("p", {}, `Session ${change.first_session}: `, data(change.first, withUnit(first, one.unit), "first"), `; session ${change.last_session}: `, data(change.last, withUnit(last, one.unit), "last"),
       "; difference ", data(change.difference, withUnit(moved(change), one.unit), "difference"), size ? ` (${size})` : "", ". ", why, tails));
 }
@@ -131,6 +142,9 @@ function limits(report: ParticipantReport, shown: number): HTMLElement {
     h("ul", { class: "limits" },
       h("li", {}, "This page does not show whether a change is good or bad, what caused it, or whether it matters to the person. It is not a diagnosis, and mbk is not a medical device."),
       h("li", {}, "“No detectable change” does not mean that nothing changed: a change below the minimal detectable change cannot be seen."),
+      ...(report.controls || report.stretches.length > 0 ? [
+        h("li", {}, "Being outside the range of the controls is not a disorder, and being inside it excludes none. The range assumes normally distributed values; it applies to people like these controls, with this apparatus and procedure. Of many values, some are outside by chance."),
+        h("li", {}, "Resistance to a stretch does not show its cause: a reflex, voluntary contraction and stiff tissue can look alike. It is not a clinical score such as the Modified Ashworth Scale.")] : []),
       shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page shows ${shown}; a single one that stands out is not significant.`) : "",
       known.length > 0
         ? h("li", {}, `The minimal detectable change is from this study: from ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more with this apparatus. An outlying participant is judged by the variances of all others. If most people really changed, it is too large; it does not apply to other people or another apparatus.`)
@@ -144,7 +158,9 @@ export function participantSections(report: ParticipantReport): HTMLElement[] {
   const shown = conditions.reduce((sum, condition) => sum + lookedAt(report.courses, condition).filter(lastOf).length, 0);
   const usable = report.recordings.filter(({ state }) => state === "usable").length;
   const ellipses = ellipseFigure(report.matrices, "K", (_, condition) => ofCondition(condition, conditions) || "stiffness");
+  const before = [controlsSection(report), sidesSection(report)].filter((one): one is HTMLElement => one !== undefined);
   return [
+    ...before,
     h("section", { id: "change" }, heading(2, "Change since the first session"),
       ...(primary.length > 0 ? primary.map((one) => statement(one, report.courses, conditions)) : [h("p", { class: "said" }, report.courses.length > 0 ? `This participant has no result for the ${outcomeName(report.primary)}.` : "This participant has no usable result.")]),
       primary.some(lastOf) ? courseFigures(primary.filter(lastOf), conditions) : ""),

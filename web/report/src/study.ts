@@ -103,6 +103,29 @@ function reliabilityTable(report: StudyReport, condition: string, conditions: st
   return table(name || "Between sessions", ["outcome", "people × sessions", "mean", "ICC(A,1)", "SEM", "MDC (95 %)", "ICC, mixed model"], rows, "numbers reliability");
 }
 
+/** Of one trial by any one rater; nothing where no rater is recorded. */
+function ratersTable(report: StudyReport, condition: string, conditions: string[]): HTMLElement | undefined {
+  const all = inOutcomeOrder(report.summary.reliability.filter((one) => one.condition === condition && one.raters && firstOf(report)(one.outcome)), ({ outcome }) => outcome);
+  if (all.length === 0) return undefined;
+  const name = ofCondition(condition, conditions);
+  return table(`${name ? `${name}: ` : ""}one trial by one rater in one session`, ["outcome", "people × raters", "Φ", "G", "SEM, any rater", "MDC, any rater", "MDC, same rater"],
+    all.map(({ outcome, unit, raters }) => {
+      const one = raters?.of_numbers[0];
+      const label = unit ? `${outcomeName(outcome)} [${unit}]` : outcomeName(outcome);
+      if (!one) return [label, `${raters?.participants} × ${raters?.raters}`, raters?.support ?? "", "–", "–", "–", "–"];
+      return [label, `${raters?.participants} × ${raters?.raters}`, iccText(one.absolute, one.absolute95 as [Value, Value]), iccText(one.relative, one.relative95 as [Value, Value]),
+        sized(one.absolute_error.sem, one.absolute_error.sem95 as [Value, Value], "rater-sem"), sized(one.absolute_error.mdc95, one.absolute_error.mdc95_interval as [Value, Value], "rater-mdc"),
+        sized(one.same_raters.mdc95, one.same_raters.mdc95_interval as [Value, Value], "same-rater-mdc")];
+    }), "numbers reliability raters");
+}
+
+function ratersSection(report: StudyReport, conditions: string[]): HTMLElement | undefined {
+  const tables = conditions.flatMap((condition) => ratersTable(report, condition, conditions) ?? []);
+  if (tables.length === 0) return undefined;
+  return h("section", { id: "raters" }, heading(2, "Raters"), ...tables,
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "Φ: dependability, the share of the variance that is due to differences between people, if any rater measures; G: if the same raters measure everybody and only differences between people matter. SEM and MDC are those of one trial. “Same rater”: between two sessions by the same rater; undefined if the study has no sessions apart from raters. All by restricted maximum likelihood; brackets are 95 % intervals. The other tables take results of different raters as trials."));
+}
+
 function reliabilitySection(report: StudyReport, conditions: string[]): HTMLElement | undefined {
   const tables = conditions.flatMap((condition) => reliabilityTable(report, condition, conditions, true) ?? []);
   const others = conditions.flatMap((condition) => reliabilityTable(report, condition, conditions, false) ?? []);
@@ -232,6 +255,7 @@ export function studySections(report: StudyReport): HTMLElement[] {
   const sections = [
     summarySection(report, conditions),
     drawn && reliabilitySection(report, conditions),
+    drawn && ratersSection(report, conditions),
     comparisonSection(report),
     drawn && participantsSection(report, conditions),
     drawn && coursesSection(report, conditions),

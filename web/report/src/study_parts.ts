@@ -32,19 +32,23 @@ const stateWords: Record<ListedRecording["state"], string> = {
   excluded: "excluded",
 };
 
+const hasRaters = (recordings: ListedRecording[]): boolean => recordings.some(({ rater }) => rater);
+
 /** Recordings of which no number counts, each with its reason. */
 export function leftOutTable(recordings: ListedRecording[], withParticipant: boolean): HTMLElement {
   const left = recordings.filter(({ state }) => state !== "usable");
   if (left.length === 0) return h("p", {}, "Every recording has a usable result and is included.");
+  const raters = hasRaters(left);
   const participant = (one: ListedRecording) => (withParticipant ? [String(one.participant)] : []);
   return table(`${counted(left.length, "recording is omitted", "recordings are omitted")}`,
-    ["recording", ...(withParticipant ? ["participant"] : []), "session", "condition", "trial", "state", "reason"],
-    left.map((one) => [String(one.number), ...participant(one), String(one.session), one.condition || "–", String(one.trial), stateWords[one.state], one.reason || "–"]), "left-out");
+    ["recording", ...(withParticipant ? ["participant"] : []), "session", "condition", ...(raters ? ["rater"] : []), "trial", "state", "reason"],
+    left.map((one) => [String(one.number), ...participant(one), String(one.session), one.condition || "–", ...(raters ? [one.rater || "–"] : []), String(one.trial), stateWords[one.state], one.reason || "–"]), "left-out");
 }
 
 export function recordingsTable(recordings: ListedRecording[]): HTMLElement {
-  return table("Every recording", ["recording", "participant", "session", "condition", "trial", "length [s]", "state"],
-    recordings.map((one) => [String(one.number), String(one.participant), String(one.session), one.condition || "–", String(one.trial), plain(one.duration_s, 4), stateWords[one.state]]), "values");
+  const raters = hasRaters(recordings);
+  return table("Every recording", ["recording", "participant", "session", "condition", ...(raters ? ["rater"] : []), "trial", "length [s]", "state"],
+    recordings.map((one) => [String(one.number), String(one.participant), String(one.session), one.condition || "–", ...(raters ? [one.rater || "–"] : []), String(one.trial), plain(one.duration_s, 4), stateWords[one.state]]), "values");
 }
 
 /** RFC 4180; what a spreadsheet would take for a formula begins with an apostrophe. */
@@ -59,13 +63,14 @@ export const csvOf = (head: string[], rows: (string | number | null | undefined)
 /** One row per number of each usable result, as `mbk study export` writes it. */
 function resultsCsv({ recordings, outcomes = [], results = [] }: StudyReport | ParticipantReport): string {
   const by = new Map(recordings.map((one) => [one.number, one]));
-  return csvOf(["participant", "session", "condition", "trial", "recording", "outcome", "value", "standard_error", "unit"],
+  const raters = hasRaters(recordings);
+  return csvOf(["participant", "session", "condition", ...(raters ? ["rater"] : []), "trial", "recording", "outcome", "value", "standard_error", "unit"],
     results.flatMap(({ recording, values, standard_errors }) => {
       const one = by.get(recording);
       if (!one) return [];
       return outcomes.flatMap(({ name, unit }, k) => {
         const value = values[k] ?? null;
-        return value === null ? [] : [[one.participant, one.session, one.condition, one.trial, one.number, name, value, standard_errors[k] ?? null, unit]];
+        return value === null ? [] : [[one.participant, one.session, one.condition, ...(raters ? [one.rater ?? ""] : []), one.trial, one.number, name, value, standard_errors[k] ?? null, unit]];
       });
     }));
 }

@@ -1,0 +1,92 @@
+#include "mbk/measure/measurement/muscles.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mbk/measure/explore/emg.h"
+#include "mbk/measure/explore/emg_responses.h"
+
+namespace mbk::measurement {
+namespace {
+
+Result<Vector> raw_emg(const Recording& recording, const std::string& muscle) {
+  if (const Channel* const channel = recording.find(muscle)) return channel->values;
+  std::vector<std::string> names;
+  for (const Channel& channel : recording.channels) {
+    if (explore::is_emg(channel)) names.push_back(channel.name);
+  }
+  if (names.empty()) {
+    return bad_data(fmt::format("'{}' is missing: no EMG was found", muscle),
+                    "name EMG channels emg_MUSCLE, or say where they are with --channels emg_biceps=4:mV");
+  }
+  return bad_data(fmt::format("'{}' is missing; the EMG channels are {}", muscle, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+Result<void> add_muscles(const Recording& recording, const std::vector<std::string>& muscles,
+                         const EmgProcessing& processing, ExplorationTrial& trial) {
+  if (muscles.empty()) return {};
+  const auto how = MBK_TRY(explore::emg_processing_at(Hertz(1.0 / trial.sample_time), processing));
+  trial.muscles.resize(trial.samples(), static_cast<Index>(muscles.size()));
+  for (std::size_t k = 0; k < muscles.size(); ++k) {
+    const auto raw = MBK_TRY(raw_emg(recording, muscles[k]));
+    for (const EmgFinding& finding : explore::check_emg(raw, how)) {
+      if (!finding.usable) return bad_data(fmt::format("{}: {}", muscles[k], finding.message), finding.remedy);
+      trial.notes.push_back(fmt::format("{}: {}; {}", muscles[k], finding.message, finding.remedy));
+    }
+    const auto band = MBK_TRY(explore::emg_band(raw, how));
+    trial.muscles.col(static_cast<Index>(k)) =
+        band.segment(std::llround(trial.from_s / trial.sample_time), trial.samples()).cwiseAbs();
+    trial.muscle_names.push_back(muscles[k]);
+  }
+  return {};
+}
+
+Result<void> scale_muscles(std::span<ExplorationTrial> trials, const std::map<std::string, double>& mvc,
+                           const std::string& schedule, const EmgProcessing& processing) {
+  if (trials.empty()) return {};
+  const std::vector<std::string> names = trials.front().muscle_names;
+  const bool both = schedule == kCoContraction;
+  if (both && names.size() != 2) {
+    return bad_usage("co-contraction needs two opposing muscles", "for example --muscles biceps,triceps");
+  }
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto column = static_cast<Index>(k);
+    double sum = 0.0, samples = 0.0;
+    for (const ExplorationTrial& trial : trials) {
+      sum += trial.muscles.col(column).sum();
+      samples += static_cast<double>(trial.samples());
+    }
+    const auto known = mvc.find(names[k]);
+    const double scale = known != mvc.end() ? known->second : sum / samples;
+    for (ExplorationTrial& trial : trials) {
+      trial.muscles.col(column) /= scale;
+      trial.muscle_units.emplace_back(known != mvc.end() ? "MVC" : "mean");
+    }
+  }
+  const auto muscle = std::ranges::find(names, schedule);
+  if (!both && muscle == names.end()) return {};
+  for (ExplorationTrial& trial : trials) {
+    auto how = MBK_TRY(explore::emg_processing_at(Hertz(1.0 / trial.sample_time), processing));
+    Vector least;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (!both && names[k] != schedule) continue;
+      const auto envelope = MBK_TRY(explore::emg_envelope(trial.muscles.col(static_cast<Index>(k)), how));
+      least = least.size() > 0 ? Vector(least.cwiseMin(envelope)) : envelope;
+    }
+    trial.scheduling = std::move(least);
+    const bool same = !both || trial.muscle_units[0] == trial.muscle_units[1];
+    if (!same) {
+      return bad_usage("--mvc is given for one of the two muscles only", "give it for both, or for none");
+    }
+    trial.scheduling_label = {both ? fmt::format("co-contraction of {} and {}", names[0], names[1]) : schedule,
+                              trial.muscle_units[both ? 0 : static_cast<std::size_t>(muscle - names.begin())]};
+  }
+  return {};
+}
+
+}  // namespace mbk::measurement
