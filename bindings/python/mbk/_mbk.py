@@ -9,7 +9,7 @@ import pathlib
 import threading
 import time
 from collections.abc import Callable, Generator
-from ctypes import c_char_p, c_double, c_int, c_size_t, c_ssize_t, c_void_p
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_ssize_t, c_void_p
 from typing import Any
 
 import numpy as np
@@ -61,20 +61,25 @@ class _Event(ctypes.Structure):
 
 
 class _Facts(ctypes.Structure):
-    _fields_ = [("size", c_size_t), ("rate_hz", c_double), ("metadata", c_void_p), ("metadata_count", c_size_t),
-                ("events", c_void_p), ("event_count", c_size_t), ("release", c_void_p), ("owner", c_void_p),
-                ("language", c_int), ("rests", c_void_p)]
+    _fields_ = [("size", c_size_t), ("rate_hz", c_double), ("metadata", POINTER(_Option)), ("metadata_count", c_size_t),
+                ("events", POINTER(_Event)), ("event_count", c_size_t), ("release", c_void_p), ("owner", c_void_p),
+                ("language", c_int), ("rests", POINTER(c_void_p))]
 
 
 class _Source(ctypes.Structure):
     _fields_ = [("path", c_char_p), ("format", c_char_p), ("sha256", c_char_p), ("trial", c_char_p)]
 
 
+_Progress = ctypes.CFUNCTYPE(None, c_void_p, c_char_p, c_double)
+_Interrupted = ctypes.CFUNCTYPE(c_int, c_void_p)
+
+
 class _Request(ctypes.Structure):
-    _fields_ = [("size", c_size_t), ("command", c_char_p), ("options", c_void_p), ("option_count", c_size_t),
-                ("words", c_void_p), ("word_count", c_size_t), ("recordings", c_void_p), ("recording_count", c_size_t),
-                ("documents", c_void_p), ("document_count", c_size_t), ("stop", c_void_p), ("progress", c_void_p),
-                ("context", c_void_p), ("language", c_int), ("interrupted", c_void_p)]
+    _fields_ = [("size", c_size_t), ("command", c_char_p), ("options", POINTER(_Option)), ("option_count", c_size_t),
+                ("words", POINTER(c_char_p)), ("word_count", c_size_t), ("recordings", POINTER(c_void_p)),
+                ("recording_count", c_size_t), ("documents", POINTER(c_char_p)), ("document_count", c_size_t),
+                ("stop", c_void_p), ("progress", _Progress), ("context", c_void_p), ("language", c_int),
+                ("interrupted", _Interrupted)]
 
 
 _P = c_void_p
@@ -122,8 +127,6 @@ _answer_error = _function(_holding, "mbk_answer_error", _P, _P, c_size_t)
 _recording_count = _function(_holding, "mbk_answer_recording_count", c_size_t, _P)
 _answer_recording = _function(_holding, "mbk_answer_recording", _P, _P, c_size_t)
 _answer_free = _function(_holding, "mbk_answer_free", None, _P)
-_Interrupted = ctypes.CFUNCTYPE(c_int, c_void_p)
-_Progress = ctypes.CFUNCTYPE(None, c_void_p, c_char_p, c_double)
 
 
 def _keep_freed_memory() -> None:
@@ -210,7 +213,7 @@ def _whole(text: bytes) -> bytes:
 def in_python(text: str) -> str:
     """A message for the command line with its options and commands as in Python."""
     answer, error = c_void_p(), c_void_p()
-    if _in_language(_given(text), _FOR_PYTHON, ctypes.byref(answer), ctypes.byref(error)):
+    if _in_language(_given(text), _FOR_PYTHON, byref(answer), byref(error)):
         raise _taken(error)
     made = _text(_answer_text(answer))
     _answer_free(answer)
@@ -312,16 +315,15 @@ class Recording:
         for name in sorted(known):
             if name not in names:
                 raise _usage(f"there is a unit for '{name}', but no such signal", "correct its name")
-        pairs = [(_given(name), _given(value)) for name, value in (metadata or {}).items()]
-        happened = [(float(at), _given(name), float(value)) for at, name, value in (events or [])]
+        pairs: list[Any] = [(_given(name), _given(value)) for name, value in (metadata or {}).items()]
+        happened: list[Any] = [(float(at), _given(name), float(value)) for at, name, value in (events or [])]
         listed = (_Option * len(pairs))(*pairs)
         events_listed = (_Event * len(happened))(*happened)
         apart = (c_void_p * len(rests))(*[None if one is None else _address(one) for one in rests])
-        facts = _Facts(ctypes.sizeof(_Facts), rate_hz, ctypes.addressof(listed), len(pairs),
-                       ctypes.addressof(events_listed), len(happened), _NOTHING, None, _FOR_PYTHON,
-                       ctypes.addressof(apart))
+        facts = _Facts(ctypes.sizeof(_Facts), rate_hz, listed, len(pairs), events_listed, len(happened), _NOTHING, None,
+                       _FOR_PYTHON, apart)
         made, error = c_void_p(), c_void_p()
-        if _recording_new(signals, len(signals), ctypes.byref(facts), ctypes.byref(made), ctypes.byref(error)):
+        if _recording_new(signals, len(signals), byref(facts), byref(made), byref(error)):
             raise _taken(error)
         self._at = made.value
 
@@ -340,7 +342,7 @@ class Recording:
         if not isinstance(name, str):
             raise TypeError(f"a name has the type {type(name).__name__}, not str")
         count = c_size_t()
-        at = None if "\0" in name else _recording_values(self._at, _given(name), ctypes.byref(count))
+        at = None if "\0" in name else _recording_values(self._at, _given(name), byref(count))
         if at is None:
             raise KeyError(name)
         return np.asarray(_Numbers(at, count.value, self))
@@ -396,9 +398,9 @@ class _Meaning:
 
     def __init__(self, recording: int | None) -> None:
         at, error, count = c_void_p(), c_void_p(), c_size_t()
-        if _recording_meaning(recording, _FOR_PYTHON, ctypes.byref(at), ctypes.byref(error)):
+        if _recording_meaning(recording, _FOR_PYTHON, byref(at), byref(error)):
             raise _taken(error)
-        _signal_values(at, 0, ctypes.byref(count))  # the time
+        _signal_values(at, 0, byref(count))  # the time
         self.samples = count.value
         self.channels = [(_text(_signal_name(at, k)), _text(_signal_unit(at, k)), _text(_signal_frame(at, k)))
                          for k in range(1, _signal_count(at))]
@@ -471,9 +473,9 @@ class Answer:
         self.errors = [_error_at(_answer_error(at, k)) for k in range(_answer_error_count(at))]
 
 
-def _options(options: dict[str, Any]) -> list[tuple[bytes, bytes]]:
+def _options(options: dict[str, Any]) -> list[Any]:
     """Each with one value; an option is repeated for several. None and False: not given."""
-    made = []
+    made: list[Any] = []
     for key, value in options.items():
         name = _given(key).replace(b"_", b"-")
         if value is None or value is False and name != b"json":
@@ -496,36 +498,30 @@ def _run(
 ) -> c_void_p:
     """The answer of `use`, run without the interpreter's lock. Ctrl-C and an exception in `progress` end it."""
     pairs = _options(options)
-    listed = (_Option * len(pairs))(*pairs)
-    words = (c_char_p * len(files))(*map(_typed, files))
-    texts = (c_char_p * len(documents))(*map(_given, documents))
-    held = (c_void_p * len(recordings))(*[one._at for one in recordings])
+    listed = (_Option * len(pairs))(*pairs) if pairs else None
+    words = (c_char_p * len(files))(*map(_typed, files)) if files else None
+    texts = (c_char_p * len(documents))(*map(_given, documents)) if documents else None
+    held = (c_void_p * len(recordings))(*[one._at for one in recordings]) if recordings else None
     kept: list[BaseException] = []
     watch = _watch(kept)
     next(watch)
-    interrupted = _Interrupted(watch.send)
-    report: Any = None
-    if progress is not None:
-        tell = progress
 
-        def reported(_context: Any, what: bytes, fraction: float) -> None:
-            try:
-                tell(_text(what), fraction)
-            except BaseException as error:
-                kept.append(error)
+    def report(_context: Any, what: bytes, fraction: float) -> None:
+        try:
+            progress(_text(what), fraction)  # type: ignore[misc]
+        except BaseException as error:
+            kept.append(error)
 
-        report = _Progress(reported)
-    request = _Request(_REQUEST_SIZE, _typed(command), ctypes.addressof(listed), len(pairs), ctypes.addressof(words),
-                       len(files), ctypes.addressof(held), len(recordings), ctypes.addressof(texts), len(documents), None,
-                       None if report is None else ctypes.cast(report, c_void_p), None, _FOR_PYTHON,
-                       ctypes.cast(interrupted, c_void_p))
+    request = _Request(_REQUEST_SIZE, _typed(command), listed, len(pairs), words, len(files), held, len(recordings), texts,
+                       len(documents), None, _NO_PROGRESS if progress is None else _Progress(report), None, _FOR_PYTHON,
+                       _Interrupted(watch.send))
     answer, error = c_void_p(), c_void_p()
     _running.add(watch)
     try:
         if _others_are_ending():
             kept.append(_made("stopped", "", "stopped", "", 3))
         else:
-            code = use(ctypes.byref(request), ctypes.byref(answer), ctypes.byref(error))
+            code = use(byref(request), byref(answer), byref(error))
     finally:
         _running.discard(watch)
     if kept:
@@ -540,6 +536,7 @@ def _run(
 
 
 _REQUEST_SIZE = ctypes.sizeof(_Request)
+_NO_PROGRESS: Any = ctypes.cast(None, _Progress)
 
 
 def call(
