@@ -1,5 +1,6 @@
-# Debian packages from the components of MbkInstall: mbk, which a laboratory installs, libmbk-dev, which only those need
-# who write programs: it brings compiler packages along, and python3-mbk, where the module of Python is built.
+# Debian packages from the components of MbkInstall: mbk, which a laboratory installs; libmbk-dev, which only those need
+# who write programs, because it brings compiler packages along; libmbk1, the library with the C interface; and python3-mbk,
+# which stands on it.
 # tools/package makes them.
 set(MBK_MAINTAINER "The mbk authors <maintainers@mbk.example>" CACHE STRING "Maintainer of the Debian packages")
 
@@ -12,6 +13,9 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
     WORLD_READ WORLD_EXECUTE)
 set(CPACK_COMPONENTS_ALL program development)
+if(MBK_C)
+  list(APPEND CPACK_COMPONENTS_ALL c)
+endif()
 if(MBK_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
@@ -39,12 +43,19 @@ reading of recordings, preparation of signals, identification of inertia,
 damping and stiffness with their covariance, ellipses, and a simulated robot
 and arm.")
 
+# debian_files.cmake puts its header and the link for linkers into libmbk-dev.
+set(CPACK_DEBIAN_C_PACKAGE_NAME libmbk1)
+set(CPACK_DEBIAN_C_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_C_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_C_PACKAGE_GENERATE_SHLIBS ON)  # ldconfig runs, too
+set(CPACK_COMPONENT_C_DESCRIPTION "The library of mbk for programs in C and in every language that calls C: each
+command that computes something runs inside the calling process, on files or
+on arrays in memory. The Python package stands on it.")
+
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-mbk)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-get_property(minor GLOBAL PROPERTY MBK_PYTHON_MINOR)
-math(EXPR next "0${minor} + 1")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${minor}~), python3 (<< 3.${next}), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "libmbk1 (= ${version}), python3 (>= 3.9), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-pandas")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-xarray, mbk")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "What the program mbk computes, for Python: recordings as NumPy arrays without
@@ -61,6 +72,9 @@ if(MBK_DPKG_QUERY)
   list(TRANSFORM owners REPLACE "[:,].*" "")
   list(SORT owners)
   list(REMOVE_DUPLICATES owners)
+  if(MBK_C)
+    list(PREPEND owners "libmbk1 (= ${version})")
+  endif()
   list(JOIN owners ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 endif()
 

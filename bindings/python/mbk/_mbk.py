@@ -536,7 +536,7 @@ def _run(
 
 
 _REQUEST_SIZE = ctypes.sizeof(_Request)
-_NO_PROGRESS: Any = ctypes.cast(None, _Progress)
+_NO_PROGRESS: Any = ctypes.cast(0, _Progress)
 
 
 def call(
