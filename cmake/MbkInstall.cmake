@@ -142,8 +142,11 @@ function(mbk_install)
           PATTERN docs/site EXCLUDE  # what builds the site out of them
           REGEX "/bridge/.*(_test\\.|CMakeLists|__pycache__)" EXCLUDE)
 
-  # What stands on libraries of its own is no library to build on: it would want these, too.
-  if(NOT MBK_STATIC)
+  if(MBK_STATIC)
+    # Licences and versions of the libraries inside. To build on such modules would take these libraries, too.
+    install(DIRECTORY ${MBK_STATIC}/licences DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+    install(FILES ${MBK_STATIC}/sources.tsv DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences COMPONENT program)
+  else()
     mbk_install_development()
   endif()
 endfunction()

@@ -1,6 +1,7 @@
 # Debian packages from the components of MbkInstall: mbk, which a laboratory installs; libmbk-dev, which only those need
 # who write programs, because it brings compiler packages along; libmbk1, the library with the C interface; and python3-mbk,
 # which stands on it.
+# Those of the preset portable (MBK_STATIC) run on every Debian from 12 on; its libmbk-dev is for programs in C.
 # tools/package makes them.
 set(MBK_MAINTAINER "The mbk authors <maintainers@mbk.example>" CACHE STRING "Maintainer of the Debian packages")
 
@@ -38,10 +39,14 @@ truth is known.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmbk-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries for C++20 with headers and a CMake package (mbk::mbk):
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Header and link of libmbk.so: the commands of mbk, called by a program in
+C or in a language that calls C.")
+if(NOT MBK_STATIC)
+  set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries for C++20 with headers and a CMake package (mbk::mbk):
 reading of recordings, preparation of signals, identification of inertia,
 damping and stiffness with their covariance, ellipses, and a simulated robot
 and arm.")
+endif()
 
 # debian_files.cmake puts its header and the link for linkers into libmbk-dev.
 set(CPACK_DEBIAN_C_PACKAGE_NAME libmbk1)
@@ -63,24 +68,23 @@ a copy, each command as a function with the same options, results with units,
 tables for notebooks and pandas, and plots.")
 
 # The packages that hold what the libraries link, asked of dpkg.
+set(owners "")
 find_program(MBK_DPKG_QUERY dpkg-query)
 mark_as_advanced(MBK_DPKG_QUERY)
-if(MBK_DPKG_QUERY)
-  get_property(files GLOBAL PROPERTY MBK_OUTSIDE_FILES)
+get_property(files GLOBAL PROPERTY MBK_OUTSIDE_FILES)
+if(MBK_DPKG_QUERY AND files)
   execute_process(COMMAND ${MBK_DPKG_QUERY} --search ${files} OUTPUT_VARIABLE owners ERROR_QUIET)
   string(REGEX MATCHALL "[^\n]+" owners "${owners}")
   list(TRANSFORM owners REPLACE "[:,].*" "")
   list(SORT owners)
   list(REMOVE_DUPLICATES owners)
-  if(MBK_C)
-    list(PREPEND owners "libmbk1 (= ${version})")
-  endif()
-  list(JOIN owners ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 endif()
+if(MBK_C)
+  list(PREPEND owners "libmbk1 (= ${version})")
+endif()
+list(JOIN owners ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 
-string(TIMESTAMP MBK_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
-set(CPACK_MBK_CHANGELOG ${PROJECT_BINARY_DIR}/packaging/changelog.Debian)
-set(CPACK_DEBIAN_PACKAGE_VERSION_FULL ${version})
-configure_file(packaging/changelog.Debian.in ${CPACK_MBK_CHANGELOG} @ONLY)
+set(CPACK_MBK_MAINTAINER ${MBK_MAINTAINER})
+set(CPACK_MBK_VERSION ${version})
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/packaging/debian_files.cmake)
 include(CPack)
