@@ -22,7 +22,7 @@ import tempfile
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-OF_C = re.compile(r"^(ld-linux.*|lib(c|m|dl|rt|pthread))\.so")  # what every Linux has
+OF_C = re.compile(r"^(ld-linux.*|lib(c|m|dl|rt|pthread|gcc_s))\.so")  # what every Linux has
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the same tree gives the same wheel
 
 

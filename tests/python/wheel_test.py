@@ -148,6 +148,8 @@ def add_python(root):
         if not target.exists():
             shutil.copyfile(os.path.realpath(path), target)
             target.chmod(0o755)
+    glibc_brings = pathlib.Path(ran("gcc", "-print-file-name=libgcc_s.so.1").strip())
+    shutil.copyfile(os.path.realpath(glibc_brings), root / "usr/lib/x86_64-linux-gnu/libgcc_s.so.1")
 
 
 if __name__ == "__main__":
