@@ -1,5 +1,5 @@
-/* What keeps mbk from glibc 2.34, that of Ubuntu 22.04 and of Enterprise Linux 9, are two symbols. The linker leads their
- * calls here (--wrap, see mbk_runs_on_older_glibc), also those in static libraries.
+/* What keeps mbk from glibc 2.34, that of Ubuntu 22.04 and of Enterprise Linux 9, are two symbols. The linker leads
+ * their calls here (--wrap, target mbk_older_glibc), also those in static libraries.
  *
  * hypot has a new version since 2.35, which does not set errno. Its first version computes the same to the last bit.
  * arc4random is of 2.36. Only libstdc++ calls it, where it is linked statically: for std::random_device. */
@@ -23,6 +23,7 @@ double __wrap_hypot(double x, double y) {
 
 uint32_t __wrap_arc4random(void) {
   uint32_t bits;
-  if (getrandom(&bits, sizeof bits, 0) != sizeof bits) abort(); /* of so few bytes all come, on every Linux since 3.17 */
+  if (getrandom(&bits, sizeof bits, 0) != sizeof bits)
+    abort(); /* of so few bytes all come, on every Linux since 3.17 */
   return bits;
 }
