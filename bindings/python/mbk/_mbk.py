@@ -10,10 +10,12 @@ import threading
 import time
 from collections.abc import Callable, Generator
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_ssize_t, c_void_p
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 _LIBRARY = "libmbk.so.1"
 _VERSION = 2  # of the interface: MBK_API_VERSION
