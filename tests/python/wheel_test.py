@@ -148,8 +148,10 @@ def add_python(root):
         if not target.exists():
             shutil.copyfile(os.path.realpath(path), target)
             target.chmod(0o755)
-    glibc_brings = pathlib.Path(ran("gcc", "-print-file-name=libgcc_s.so.1").strip())
-    shutil.copyfile(os.path.realpath(glibc_brings), root / "usr/lib/x86_64-linux-gnu/libgcc_s.so.1")
+    # Debian's libc6 and other systems' glibc bring it along.
+    libraries = root / "usr/lib/x86_64-linux-gnu"
+    libraries.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(os.path.realpath(ran("gcc", "-print-file-name=libgcc_s.so.1").strip()), libraries / "libgcc_s.so.1")
 
 
 if __name__ == "__main__":
