@@ -27,13 +27,10 @@ elseif(MBK_WARNINGS_AS_ERRORS)
   target_compile_options(mbk_settings INTERFACE -Werror)
 endif()
 
-# mbk_runs_on_older_glibc(TARGET): see older_glibc.c.
+# What a program or shared library links to run with glibc 2.34.
 if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|aarch64)$")
-  add_library(mbk_older_glibc OBJECT ${PROJECT_SOURCE_DIR}/cmake/older_glibc.c)
+  add_library(mbk_older_glibc OBJECT ${CMAKE_CURRENT_LIST_DIR}/older_glibc.c)
+  target_link_options(mbk_older_glibc INTERFACE -Wl,--wrap=hypot,--wrap=arc4random)
+else()
+  add_library(mbk_older_glibc INTERFACE)
 endif()
-function(mbk_runs_on_older_glibc target)
-  if(TARGET mbk_older_glibc)
-    target_sources(${target} PRIVATE $<TARGET_OBJECTS:mbk_older_glibc>)
-    target_link_options(${target} PRIVATE -Wl,--wrap=hypot)
-  endif()
-endfunction()

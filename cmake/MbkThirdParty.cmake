@@ -42,6 +42,7 @@ mbk_archive(PkgConfig::OROCOS_KDL liborocos-kdl.a HEADERS eigen3)
 mbk_archive(urdfdom::urdfdom_model liburdfdom_model.a libconsole_bridge.a libtinyxml.a)
 
 if(NOT WIN32)
-  # A name that the process has loaded already must not replace one of these.
-  add_link_options(-static-libstdc++ -static-libgcc -Wl,--exclude-libs,ALL)
+  # A name that the process has loaded already must not replace one of these. libgcc_s stays: glibc brings it along, and
+  # its static form would need glibc 2.35.
+  add_link_options(-static-libstdc++ -Wl,--exclude-libs,ALL)
 endif()

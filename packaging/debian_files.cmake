@@ -25,7 +25,7 @@ if(EXISTS ${c})
   if(EXISTS ${program}/doc/mbk/licences)  # of the libraries inside
     file(COPY ${program}/doc/mbk/licences DESTINATION ${c}/share/doc/libmbk1)
   endif()
-  file(GLOB_RECURSE link LIST_DIRECTORIES false RELATIVE ${c} ${c}/libmbk.so ${c}/*/libmbk.so)
+  file(GLOB_RECURSE link LIST_DIRECTORIES false RELATIVE ${c} ${c}/libmbk.so)
   file(RENAME ${c}/${link} ${CPACK_TEMPORARY_DIRECTORY}/development/usr/${link})
   file(MAKE_DIRECTORY ${c}/share/lintian/overrides ${c}/share/doc/libmbk1)
   file(COPY_FILE ${CMAKE_CURRENT_LIST_DIR}/lintian-overrides ${c}/share/lintian/overrides/libmbk1)
