@@ -53,7 +53,10 @@ endif()
 set(CPACK_DEBIAN_C_PACKAGE_NAME libmbk1)
 set(CPACK_DEBIAN_C_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_C_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_C_PACKAGE_GENERATE_SHLIBS ON)  # ldconfig runs, too
+# dpkg-shlibdeps of other packages reads the first; by the second ldconfig runs.
+file(WRITE ${PROJECT_BINARY_DIR}/packaging/shlibs "libmbk 1 libmbk1 (>= ${PROJECT_VERSION})\n")
+file(WRITE ${PROJECT_BINARY_DIR}/packaging/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_C_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/packaging/shlibs ${PROJECT_BINARY_DIR}/packaging/triggers)
 set(CPACK_COMPONENT_C_DESCRIPTION "The library of mbk for programs in C and in every language that calls C: each
 command that computes something runs inside the calling process, on files or
 on arrays in memory. The Python package stands on it.")
