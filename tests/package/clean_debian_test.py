@@ -73,6 +73,9 @@ class InDebian:
         unpacked = next((self.root / "opt").glob("mbk-*"))
         self.measures(f"/opt/{unpacked.name}/bin/mbk")
         self.assertLess(time.monotonic() - begun, LONGEST_S)
+        version = self.inside(f"/opt/{unpacked.name}/bin/mbk", "--version")
+        self.assertRegex(version, r"\Ambk \d+\.\d+\.\d+\ncommit +[0-9a-f]{40}\ncompiler +\S.*\nlibraries +\S")
+        self.assertIn("orocos-kdl ", version)
         moved = unpacked.rename(self.root / "srv/a folder")
         self.measures("/srv/a folder/bin/mbk")
         for path in ("lib/libmbk.so.1", "include/mbk.h", "share/man/man1/mbk.1", "share/doc/mbk/licences/orocos-kdl",
