@@ -1,4 +1,10 @@
-# What mbk stands on. Everything comes from Debian 12's packages (tools/packages lists them).
+# What mbk stands on. Everything comes from Debian 12's packages (tools/packages lists them), or, for what runs where none
+# of them is installed, from a folder of static libraries that tools/third-party makes.
+set(MBK_STATIC "" CACHE PATH "Link third-party libraries and the C++ runtime statically: the folder of tools/third-party")
+if(MBK_STATIC)
+  include(MbkThirdParty)
+  return()
+endif()
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(tl-expected REQUIRED)
@@ -22,18 +28,13 @@ find_package(BZip2 REQUIRED)
 # A study's database. Debian's package brings SQLiteCpp as a static library.
 find_package(SQLiteCpp 3.2 REQUIRED CONFIG)
 
-# For what runs on any Linux: wheels and archives. tools/static-libraries makes those libraries that Debian does not have.
-set(MBK_STATIC "" CACHE PATH "Link third-party libraries and the C++ runtime statically, with those in this folder")
-
 # mbk_link_statically(TARGET PROPERTY FILE): what few commands use stands in the program, where it costs nothing until it
 # is called; to load it would be a third of what every start costs. Where there is no such archive it is loaded after all.
 function(mbk_link_statically target property file)
-  find_library(MBK_${file} ${file} HINTS ${MBK_STATIC})
+  find_library(MBK_${file} ${file})
   mark_as_advanced(MBK_${file})
   if(MBK_${file})
     set_target_properties(${target} PROPERTIES ${property} ${MBK_${file}})
-  elseif(MBK_STATIC)
-    message(FATAL_ERROR "MBK_STATIC: there is no ${file}; tools/static-libraries ${MBK_STATIC} makes what Debian lacks")
   endif()
 endfunction()
 mbk_link_statically(PkgConfig::MINIZIP INTERFACE_LINK_LIBRARIES libminizip.a)
@@ -44,60 +45,6 @@ mbk_link_statically(SQLite::SQLite3 IMPORTED_LOCATION libsqlite3.a)
 # orocos-kdl's CMake file names no target.
 pkg_check_modules(OROCOS_KDL REQUIRED IMPORTED_TARGET orocos-kdl)
 find_package(urdfdom REQUIRED)
-if(MBK_STATIC)
-  mbk_link_statically(PkgConfig::LIBDEFLATE INTERFACE_LINK_LIBRARIES libdeflate.a)
-  mbk_link_statically(PkgConfig::LIBLZF INTERFACE_LINK_LIBRARIES liblzf.a)
-  mbk_link_statically(PkgConfig::OROCOS_KDL INTERFACE_LINK_LIBRARIES liborocos-kdl.a)
-  mbk_link_statically(ZLIB::ZLIB IMPORTED_LOCATION_RELEASE libz.a)
-  mbk_link_statically(BZip2::BZip2 IMPORTED_LOCATION_RELEASE libbz2.a)
-  mbk_link_statically(fmt::fmt IMPORTED_LOCATION_NONE libfmt.a)
-  mbk_link_statically(console_bridge::console_bridge IMPORTED_LOCATION_NONE libconsole_bridge.a)
-  mbk_link_statically(urdfdom::urdfdom_model IMPORTED_LOCATION_NONE liburdfdom_model.a)
-  find_library(MBK_libtinyxml.a libtinyxml.a REQUIRED)
-  set_target_properties(urdfdom::urdfdom_model PROPERTIES INTERFACE_LINK_LIBRARIES
-                        "console_bridge::console_bridge;urdfdom_headers::urdfdom_headers;${MBK_libtinyxml.a}")
-  # A name that the process has loaded already must not replace one of these. libgcc_s stays: glibc brings it along, and
-  # its static form would need glibc 2.35.
-  add_link_options(-static-libstdc++ -Wl,--exclude-libs,ALL)
-endif()
-
-# What a program or shared library links to run with glibc 2.34.
-if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|aarch64)$")
-  add_library(mbk_older_glibc OBJECT ${CMAKE_CURRENT_LIST_DIR}/older_glibc.c)
-  target_link_options(mbk_older_glibc INTERFACE -Wl,--wrap=hypot,--wrap=arc4random)
-else()
-  add_library(mbk_older_glibc INTERFACE)
-endif()
-
-# Settings that every target of this project shares.
-add_library(mbk_settings INTERFACE)
-target_compile_features(mbk_settings INTERFACE cxx_std_20)
-target_compile_definitions(mbk_settings INTERFACE EIGEN_MPL2_ONLY)
-if(MBK_COMPILER_CHECKS)
-  target_compile_options(mbk_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                         -Wold-style-cast -Woverloaded-virtual -Wdouble-promotion
-                         -Wno-missing-field-initializers)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC 12 sees reads beyond small matrices in Eigen's copies, overlaps and (with precompiled headers) overflows in
-    # std::string's, and members of a std::variant that nothing set, where there are none.
-    target_compile_options(mbk_settings INTERFACE -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow
-                           -Wno-restrict -Wno-maybe-uninitialized)
-  endif()
-else()
-  # They are a twentieth of the time of compiling, and find nothing that the tests' build has not found.
-  target_compile_options(mbk_settings INTERFACE -w)
-  target_compile_definitions(mbk_settings INTERFACE FMT_CONSTEVAL=)
-endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # Its garbage is left lying until a gigabyte of it is there, which saves a tenth of the time of compiling.
-  target_compile_options(mbk_settings INTERFACE --param=ggc-min-heapsize=1048576)
-endif()
-if(MBK_WARNINGS_AS_ERRORS AND NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^12"))
-  message(STATUS "Warnings are not errors: only those of GCC 12 have been cleared")
-elseif(MBK_WARNINGS_AS_ERRORS)
-  target_compile_options(mbk_settings INTERFACE -Werror)
-endif()
-
 if(MBK_BUILD_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)

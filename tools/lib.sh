@@ -14,16 +14,26 @@ die() {
 # microseconds: the clock, as a whole number
 microseconds() { printf '%s' "${EPOCHREALTIME//[.,]/}"; }
 
+# epoch: artefacts bear the time of the commit, so that who builds them again gets the same
+epoch() { export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}; }
+
 # step WHAT COMMAND...: one line when it goes well, with the time if that was more than a second; otherwise the end
 # of what the command said, where the rest is, and the command's exit code.
 step() {
-  local what=$1 start log code=0 tenths duration=''
+  local what=$1 start log code tenths duration=''
   shift
   log=build/log/${what// /_}.log
   mkdir -p build/log
   printf '%-36s' "$what"
   start=$(microseconds)
-  "$@" >"$log" 2>&1 || code=$?
+  # In a shell of its own, where the first command of a function that fails ends it; behind || none would.
+  set +e
+  (
+    set -e
+    "$@"
+  ) >"$log" 2>&1
+  code=$?
+  set -e
   tenths=$((($(microseconds) - start) / 100000))
   if ((tenths > 10)); then duration=" ($((tenths / 10)).$((tenths % 10)) s)"; fi
   if ((code == 0)); then
