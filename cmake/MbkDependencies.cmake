@@ -1,4 +1,10 @@
-# What mbk stands on. Everything comes from Debian 12's packages (tools/packages lists them).
+# What mbk stands on. Everything comes from Debian 12's packages (tools/packages lists them), or, for what runs where none
+# of them is installed, from a folder of static libraries that tools/third-party makes.
+set(MBK_STATIC "" CACHE PATH "Link third-party libraries and the C++ runtime statically: the folder of tools/third-party")
+if(MBK_STATIC)
+  include(MbkThirdParty)
+  return()
+endif()
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(tl-expected REQUIRED)
@@ -39,36 +45,6 @@ mbk_link_statically(SQLite::SQLite3 IMPORTED_LOCATION libsqlite3.a)
 # orocos-kdl's CMake file names no target.
 pkg_check_modules(OROCOS_KDL REQUIRED IMPORTED_TARGET orocos-kdl)
 find_package(urdfdom REQUIRED)
-
-# Settings that every target of this project shares.
-add_library(mbk_settings INTERFACE)
-target_compile_features(mbk_settings INTERFACE cxx_std_20)
-target_compile_definitions(mbk_settings INTERFACE EIGEN_MPL2_ONLY)
-if(MBK_COMPILER_CHECKS)
-  target_compile_options(mbk_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                         -Wold-style-cast -Woverloaded-virtual -Wdouble-promotion
-                         -Wno-missing-field-initializers)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC 12 sees reads beyond small matrices in Eigen's copies, overlaps and (with precompiled headers) overflows in
-    # std::string's, and members of a std::variant that nothing set, where there are none.
-    target_compile_options(mbk_settings INTERFACE -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow
-                           -Wno-restrict -Wno-maybe-uninitialized)
-  endif()
-else()
-  # They are a twentieth of the time of compiling, and find nothing that the tests' build has not found.
-  target_compile_options(mbk_settings INTERFACE -w)
-  target_compile_definitions(mbk_settings INTERFACE FMT_CONSTEVAL=)
-endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # Its garbage is left lying until a gigabyte of it is there, which saves a tenth of the time of compiling.
-  target_compile_options(mbk_settings INTERFACE --param=ggc-min-heapsize=1048576)
-endif()
-if(MBK_WARNINGS_AS_ERRORS AND NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^12"))
-  message(STATUS "Warnings are not errors: only those of GCC 12 have been cleared")
-elseif(MBK_WARNINGS_AS_ERRORS)
-  target_compile_options(mbk_settings INTERFACE -Werror)
-endif()
-
 if(MBK_BUILD_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)

@@ -1,6 +1,6 @@
 # What `cmake --install` puts where. Components: program (what runs: mbk, its manual pages, its completion, the schemas of
-# what it writes, the documents), and development (what an application is built with: libraries, headers, the CMake
-# package mbk).
+# what it writes, the documents), development (what an application is built with: libraries, headers, the CMake package
+# mbk), c (libmbk.so and its header), octave (the package of MATLAB and Octave) and python.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -98,23 +98,8 @@ function(mbk_install_program_texts)
   install(FILES ${folder}/completion/mbk.fish DESTINATION ${MBK_FISH_COMPLETIONS} COMPONENT program)
 endfunction()
 
-# Call it when every target is there.
-function(mbk_install)
-  # `mbk validate faults --link udp` looks for the other program beside itself.
-  install(TARGETS mbk mbk_misbehaving_robot RUNTIME COMPONENT program)
-  install(FILES apps/misbehaving_robot/mbk_misbehaving_robot.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
-  mbk_install_program_texts()
-
-  # The JSON schemas that users' scripts may rely on: docs/guide/reference.md.
-  install(DIRECTORY ${PROJECT_BINARY_DIR}/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/mbk COMPONENT program)
-
-  # The folders keep their places beside each other, so that the links between the documents hold.
-  install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright
-          DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-  install(DIRECTORY docs examples bridge DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
-          PATTERN docs/site EXCLUDE  # what builds the site out of them
-          REGEX "/bridge/.*(_test\\.|CMakeLists|__pycache__)" EXCLUDE)
-
+# The component development: static libraries, headers, CMake package.
+function(mbk_install_development)
   get_property(modules GLOBAL PROPERTY MBK_MODULES)
   add_library(mbk_all INTERFACE)
   list(TRANSFORM modules PREPEND mbk:: OUTPUT_VARIABLE all)
@@ -138,4 +123,30 @@ function(mbk_install)
   install(FILES ${folder}/mbkConfig.cmake ${folder}/mbkConfigVersion.cmake DESTINATION ${MBK_CMAKE_FOLDER}
           COMPONENT development)
   install(EXPORT mbk FILE mbkTargets.cmake NAMESPACE mbk:: DESTINATION ${MBK_CMAKE_FOLDER} COMPONENT development)
+endfunction()
+
+# Call it when every target is there.
+function(mbk_install)
+  # `mbk validate faults --link udp` looks for the other program beside itself.
+  install(TARGETS mbk mbk_misbehaving_robot RUNTIME COMPONENT program)
+  install(FILES apps/misbehaving_robot/mbk_misbehaving_robot.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+  mbk_install_program_texts()
+
+  # The JSON schemas that users' scripts may rely on: docs/guide/reference.md.
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/mbk COMPONENT program)
+
+  # The folders keep their places beside each other, so that the links between the documents hold.
+  install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright
+          DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+  install(DIRECTORY docs examples bridge DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
+          PATTERN docs/site EXCLUDE  # what builds the site out of them
+          REGEX "/bridge/.*(_test\\.|CMakeLists|__pycache__)" EXCLUDE)
+
+  if(MBK_STATIC)
+    # Licences and versions of the libraries inside. To build on such modules would take these libraries, too.
+    install(DIRECTORY ${MBK_STATIC}/licences DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+    install(FILES ${MBK_STATIC}/sources.tsv DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences COMPONENT program)
+  else()
+    mbk_install_development()
+  endif()
 endfunction()

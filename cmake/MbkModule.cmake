@@ -59,7 +59,7 @@ function(mbk_module name)
   target_include_directories(mbk_${name} ${public} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(mbk_${name} ${public} ${dependencies} ${ARG_PUBLIC_LIBRARIES})
   add_library(mbk::${name} ALIAS mbk_${name})
-  if(NOT ARG_NOT_INSTALLED)
+  if(NOT ARG_NOT_INSTALLED AND NOT MBK_STATIC)
     mbk_install_module(${name} ${ARG_PRIVATE_HEADERS})
   endif()
 

@@ -14,6 +14,9 @@ die() {
 # microseconds: the clock, as a whole number
 microseconds() { printf '%s' "${EPOCHREALTIME//[.,]/}"; }
 
+# epoch: artefacts bear the time of the commit, so that who builds them again gets the same
+epoch() { export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}; }
+
 # step WHAT COMMAND...: one line when it goes well, with the time if that was more than a second; otherwise the end
 # of what the command said, where the rest is, and the command's exit code.
 step() {

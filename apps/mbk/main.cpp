@@ -14,6 +14,7 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/output.h"
+#include "apps/mbk/terminal/built_from.h"
 #include "apps/mbk/terminal/command.h"
 #include "apps/mbk/terminal/command_list.h"
 #include "apps/mbk/terminal/help.h"
@@ -21,7 +22,6 @@
 #include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/base/core/vector4.h"
-#include "mbk/base/core/version.h"
 #include "mbk/base/core/words.h"
 #include "mbk/base/system/files.h"
 #include "mbk/base/system/process.h"
@@ -88,8 +88,7 @@ int run(const std::vector<std::string>& words) {
       "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"
       "and position while the robot perturbs it. F is the force that the hand exerts on the robot.\n");
   const mbk::app::Command app = parser.command();
-  app.add_text_flag(
-      "--version", [] { return fmt::format("mbk {}", mbk::version()); }, "Print the version and exit");
+  app.add_text_flag("--version", mbk::app::built_from, "Print the version and exit");
   app.require_subcommand();
   mbk::app::add_help(app);
 

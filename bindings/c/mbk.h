@@ -27,7 +27,7 @@
  * - The library prints nothing and never ends the process.
  *
  * Versions: additions increase MBK_API_VERSION. Existing declarations keep their meaning while the library is
- * libmbk.so.1. Structures that may grow carry their size.
+ * libmbk.so.1. Structures that may grow carry their size: one of an older header is accepted, and what it lacks is 0.
  */
 #ifndef MBK_H
 #define MBK_H
@@ -38,7 +38,7 @@
 extern "C" {
 #endif
 
-#define MBK_API_VERSION 1
+#define MBK_API_VERSION 2
 
 #if defined(__GNUC__)
 #define MBK_API __attribute__((visibility("default")))
@@ -66,10 +66,12 @@ MBK_API int mbk_api_version(void);
 /* Version of mbk: "0.1.0". */
 MBK_API const char* mbk_version(void);
 
-/* How errors, warnings and messages name options and commands, in the whole process. */
+/* How errors, warnings and messages name options and commands: in the whole process, or in the calls that state a
+ * language. */
 enum {
-  MBK_FOR_C = 0,     /* as mbk_option: {"rate", "1000"}; the default */
-  MBK_FOR_MATLAB = 1 /* as arguments of +mbk: 'rate', 1000 */
+  MBK_FOR_C = 0,      /* as mbk_option: {"rate", "1000"}; the default. For one call: as set for the process */
+  MBK_FOR_MATLAB = 1, /* as arguments of +mbk: 'rate', 1000 */
+  MBK_FOR_PYTHON = 2  /* as arguments of the Python package: rate=1000 (version 2) */
 };
 MBK_API void mbk_set_language(int language);
 
@@ -121,6 +123,11 @@ typedef struct mbk_facts {
    * thread, when they are no longer needed; before mbk_recording_new returns if it fails. */
   void (*release)(void* owner);
   void* owner;
+  /* Since version 2. */
+  int language; /* of errors; 0: as set for the process */
+  /* For each signal NULL or `count` numbers: what the values leave of 64-bit integers, integer - value. NULL: nothing.
+   */
+  const short* const* rests;
 } mbk_facts;
 
 /* Makes a recording from signals. facts: may be NULL. */
@@ -143,6 +150,27 @@ MBK_API size_t mbk_recording_event_count(const mbk_recording* recording);
 MBK_API mbk_event mbk_recording_event(const mbk_recording* recording, size_t k);
 MBK_API void mbk_recording_free(mbk_recording* recording);
 
+/* Since version 2. The numbers of the signal with that name, or whose name means the same channel; NULL if there is
+ * none. */
+MBK_API const double* mbk_recording_values(const mbk_recording* recording, const char* name, size_t* count);
+
+/* Since version 2. The recording as commands read it without options: its signals are the time and the channels that
+ * mbk recognises, in SI units. language: as in mbk_facts. */
+MBK_API int mbk_recording_meaning(const mbk_recording* recording, int language, mbk_recording** meaning,
+                                  mbk_error** error);
+/* What only such a recording has; "" and 0 for others. Frame of the signal k; how it was read; files it came from. */
+typedef struct mbk_source {
+  const char* path;
+  const char* format;
+  const char* sha256;
+  const char* trial;
+} mbk_source;
+MBK_API const char* mbk_recording_signal_frame(const mbk_recording* meaning, size_t k);
+MBK_API size_t mbk_recording_note_count(const mbk_recording* meaning);
+MBK_API const char* mbk_recording_note(const mbk_recording* meaning, size_t k);
+MBK_API size_t mbk_recording_source_count(const mbk_recording* meaning);
+MBK_API mbk_source mbk_recording_source(const mbk_recording* meaning, size_t k);
+
 /* ---- commands ---- */
 
 typedef struct mbk_request {
@@ -152,13 +180,20 @@ typedef struct mbk_request {
   size_t option_count;
   const char* const* words; /* arguments other than options: names of files, … */
   size_t word_count;
-  const mbk_recording* const* recordings; /* instead of files; they come before the words */
+  /* Instead of files. A word or the value of an option may name one: "<recording 1>". The others come before the words.
+   */
+  const mbk_recording* const* recordings;
   size_t recording_count;
-  const char* const* documents; /* results as JSON, instead of result files; they come after the recordings */
+  const char* const* documents; /* results as JSON in the same way: "<result 1>.json"; they come after the recordings */
   size_t document_count;
   int (*stop)(void* context); /* polled often, from several threads; non-zero ends the call. NULL: never */
   void (*progress)(void* context, const char* what, double fraction); /* 0 to 1; from any thread, one at a time */
   void* context;
+  /* Since version 2. */
+  int language; /* of errors, warnings and messages; 0: as set for the process */
+  /* Like `stop`, for hosts whose code runs only on certain threads: asked on the thread of the call, 20 times a second.
+   * NULL: never */
+  int (*interrupted)(void* context);
 } mbk_request;
 
 /* Runs a command. Returns 0 or, with an answer, MBK_FALLS_SHORT, MBK_BAD_DATA (some of several files could not be
@@ -180,6 +215,16 @@ MBK_API const char* mbk_answer_message(const mbk_answer* answer, size_t k);
 MBK_API size_t mbk_answer_error_count(const mbk_answer* answer);
 MBK_API const mbk_error* mbk_answer_error(const mbk_answer* answer, size_t k);
 MBK_API void mbk_answer_free(mbk_answer* answer);
+
+/* Since version 2. Reads every recording in the files that the request has as words, with its options for reading. */
+MBK_API int mbk_read_all(const mbk_request* request, mbk_answer** answer, mbk_error** error);
+/* The recordings of such an answer. Each one returned is to be freed, and may be used when the answer is freed. NULL:
+ * there is none, or not enough memory. */
+MBK_API size_t mbk_answer_recording_count(const mbk_answer* answer);
+MBK_API mbk_recording* mbk_answer_recording(const mbk_answer* answer, size_t k);
+
+/* Since version 2. Answers with the text, a message for the command line, as a message for `language`. */
+MBK_API int mbk_in_language(const char* text, int language, mbk_answer** answer, mbk_error** error);
 
 /* Every command with its options, defaults and descriptions, and whether it can be called: the document that
    `mbk manual --json` writes (schema `commands`). NULL if there is not enough memory. */

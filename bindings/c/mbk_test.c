@@ -252,6 +252,153 @@ static void test_messages_name_options_as_the_caller_writes_them(void) {
   mbk_recording_free(recording);
 }
 
+static void test_a_call_has_a_language_of_its_own(void) {
+  mbk_recording* const recording = trial(NULL, NULL);
+  const mbk_recording* const recordings[] = {recording};
+  const mbk_option parts[] = {{"parts", NULL}};
+  mbk_answer* answer = NULL;
+  mbk_error* error = NULL;
+  mbk_request request = {.size = sizeof request, .command = "measure", .options = parts, .option_count = 1};
+  request.recordings = recordings;
+  request.recording_count = 1;
+  request.language = MBK_FOR_PYTHON;
+  EXPECT(mbk_call(&request, &answer, &error) == MBK_WRONG_USAGE);
+  EXPECT(strstr(mbk_error_line(error), "parts=True") != NULL);
+  mbk_error_free(error);
+  EXPECT(measure(recording, parts, 1, &answer, &error) == MBK_WRONG_USAGE); /* the process keeps its own */
+  EXPECT(strstr(mbk_error_line(error), "{\"parts\", NULL}") != NULL);
+  mbk_error_free(error);
+  EXPECT(mbk_in_language("pass --rate 1000", MBK_FOR_PYTHON, &answer, NULL) == MBK_FINE);
+  EXPECT(strcmp(mbk_answer_text(answer), "pass rate=1000") == 0);
+  mbk_answer_free(answer);
+  mbk_recording_free(recording);
+}
+
+static void test_takes_structures_of_the_first_version(void) {
+  const mbk_signal signals[] = {{"time", "s", numbers[0], kCount, 0, 1},
+                                {"x", "rad", numbers[1], kCount, 0, 0},
+                                {"F", "N.m", numbers[2], kCount, 0, 1}};
+  mbk_facts facts;
+  memset(&facts, 0xff, sizeof facts); /* what follows the first version is not looked at */
+  memset(&facts, 0, offsetof(mbk_facts, language));
+  facts.size = offsetof(mbk_facts, language);
+  mbk_recording* recording = NULL;
+  EXPECT(mbk_recording_new(signals, 3, &facts, &recording, NULL) == MBK_FINE);
+  mbk_request request;
+  memset(&request, 0xff, sizeof request);
+  memset(&request, 0, offsetof(mbk_request, language));
+  request.size = offsetof(mbk_request, language);
+  request.command = "info";
+  request.recordings = (const mbk_recording* const*)&recording;
+  request.recording_count = 1;
+  mbk_answer* answer = NULL;
+  EXPECT(mbk_call(&request, &answer, NULL) == MBK_FINE);
+  mbk_answer_free(answer);
+  request.size = sizeof request - 1;
+  EXPECT(mbk_call(&request, &answer, NULL) == MBK_WRONG_USAGE);
+  mbk_recording_free(recording);
+}
+
+static void test_shows_what_a_recording_means(void) {
+  mbk_recording* const recording = trial(NULL, NULL);
+  mbk_recording* meaning = NULL;
+  mbk_error* error = NULL;
+  EXPECT(mbk_recording_meaning(recording, 0, &meaning, &error) == MBK_FINE && error == NULL);
+  EXPECT(mbk_recording_signal_count(meaning) == 3);
+  EXPECT(strcmp(mbk_recording_signal_name(meaning, 0), "time") == 0);
+  EXPECT(strcmp(mbk_recording_signal_name(meaning, 1), "position") == 0 ||
+         strcmp(mbk_recording_signal_name(meaning, 2), "position") == 0);
+  EXPECT(mbk_recording_source_count(meaning) == 0 && *mbk_recording_source(meaning, 0).path == '\0');
+  EXPECT(mbk_recording_note_count(recording) == 0 && *mbk_recording_note(recording, 0) == '\0');
+  EXPECT(*mbk_recording_signal_frame(meaning, SIZE_MAX) == '\0');
+  size_t count = 0;
+  EXPECT(mbk_recording_values(recording, "position", &count) != NULL && count == kCount);
+  EXPECT(mbk_recording_values(recording, "elsewhere", &count) == NULL && count == 0);
+  mbk_recording_free(meaning);
+  mbk_recording_free(recording);
+
+  const mbk_signal unknown = {"u", NULL, numbers[0], kCount, 0, 1};
+  mbk_recording* what = NULL;
+  EXPECT(mbk_recording_new(&unknown, 1, NULL, &what, NULL) == MBK_FINE);
+  EXPECT(mbk_recording_meaning(what, MBK_FOR_PYTHON, &meaning, &error) != MBK_FINE && meaning == NULL);
+  EXPECT(strstr(mbk_error_line(error), "--") == NULL);
+  mbk_error_free(error);
+  mbk_recording_free(what);
+}
+
+static void test_keeps_whole_numbers_above_2_53(void) {
+  static double rounded[kCount];
+  static short left[kCount];
+  for (size_t k = 0; k < kCount; ++k) {
+    const int64_t whole = INT64_C(1700000000123456789) + (int64_t)k * 1000001;
+    rounded[k] = (double)whole;
+    left[k] = (short)(whole - (int64_t)rounded[k]);
+  }
+  const mbk_signal signals[] = {{"time", "ns", rounded, kCount, 0, 1},
+                                {"x", "rad", numbers[1], kCount, 0, 1},
+                                {"F", "N.m", numbers[2], kCount, 0, 1}};
+  const short* const rests[] = {left, NULL, NULL};
+  mbk_facts facts = {.size = sizeof facts, .rests = rests};
+  mbk_recording *recording = NULL, *meaning = NULL;
+  EXPECT(mbk_recording_new(signals, 3, &facts, &recording, NULL) == MBK_FINE);
+  EXPECT(mbk_recording_meaning(recording, 0, &meaning, NULL) == MBK_FINE);
+  const double* const time = mbk_recording_values(meaning, "time", NULL);
+  EXPECT(time != NULL && fabs(time[1] - time[0] - 1.000001e-3) < 1e-12);
+  mbk_recording_free(meaning);
+  mbk_recording_free(recording);
+}
+
+static void test_reads_every_recording_of_the_files(void) {
+  mbk_recording* recording = trial(NULL, NULL);
+  mbk_answer* answer = NULL;
+  mbk_error* error = NULL;
+  const char* const file[] = {"mbk_test_recording.h5"};
+  const mbk_option options[] = {{"overwrite", NULL}, {"quiet", NULL}};
+  mbk_request request = {.size = sizeof request, .command = "convert", .options = options, .option_count = 2};
+  request.words = file;
+  request.word_count = 1;
+  request.recordings = (const mbk_recording* const*)&recording;
+  request.recording_count = 1;
+  EXPECT(mbk_call(&request, &answer, &error) == MBK_FINE);
+  mbk_answer_free(answer);
+  mbk_recording_free(recording);
+
+  const char* const twice[] = {file[0], file[0]};
+  mbk_request reading = {.size = sizeof reading, .words = twice, .word_count = 2};
+  EXPECT(mbk_read_all(&reading, &answer, &error) == MBK_FINE);
+  EXPECT(mbk_answer_recording_count(answer) == 2 && mbk_answer_recording(answer, 2) == NULL);
+  recording = mbk_answer_recording(answer, 1);
+  mbk_answer_free(answer);
+  size_t count = 0;
+  EXPECT(mbk_recording_values(recording, "position", &count) != NULL && count == kCount);
+  mbk_recording* meaning = NULL;
+  EXPECT(mbk_recording_meaning(recording, 0, &meaning, NULL) == MBK_FINE);
+  EXPECT(mbk_recording_source_count(meaning) == 1 && strcmp(mbk_recording_source(meaning, 0).path, file[0]) == 0);
+  EXPECT(strlen(mbk_recording_source(meaning, 0).sha256) == 64);
+  mbk_recording_free(meaning);
+  mbk_recording_free(recording);
+  remove(file[0]);
+  EXPECT(mbk_read_all(&reading, &answer, &error) == MBK_BAD_DATA && answer == NULL);
+  mbk_error_free(error);
+  EXPECT(mbk_read_all(NULL, &answer, NULL) == MBK_WRONG_USAGE && mbk_read_all(&reading, NULL, NULL) == MBK_WRONG_USAGE);
+}
+
+static void test_asks_whether_it_is_interrupted(void) {
+  mbk_answer* answer = NULL;
+  mbk_error* error = NULL;
+  int asked = 0;
+  const char* const words[] = {"coverage"};
+  const mbk_option options[] = {{"runs", "100000"}, {"threads", "1"}};
+  mbk_request request = {.size = sizeof request, .command = "validate", .options = options, .option_count = 2};
+  request.words = words;
+  request.word_count = 1;
+  request.interrupted = at_once;
+  request.context = &asked;
+  EXPECT(mbk_call(&request, &answer, &error) == MBK_STOPPED);
+  EXPECT(answer == NULL && error != NULL && asked == 1);
+  mbk_error_free(error);
+}
+
 static void test_frees_nothing(void) {
   mbk_error_free(NULL);
   mbk_answer_free(NULL);
@@ -269,6 +416,12 @@ int main(void) {
   test_answers_null_and_impossible_sizes();
   test_stops();
   test_messages_name_options_as_the_caller_writes_them();
+  test_a_call_has_a_language_of_its_own();
+  test_takes_structures_of_the_first_version();
+  test_shows_what_a_recording_means();
+  test_keeps_whole_numbers_above_2_53();
+  test_reads_every_recording_of_the_files();
+  test_asks_whether_it_is_interrupted();
   test_frees_nothing();
   if (failures > 0) fprintf(stderr, "%d failures\n", failures);
   return failures == 0 ? 0 : 1;

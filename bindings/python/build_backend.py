@@ -2,7 +2,9 @@
 
 `pip install .` configures and builds in build/wheel, or in the folder of `--config-settings build-dir=…`, with the CMake
 options in the environment variable CMAKE_ARGS. If MBK_BUILD names a build folder of this tree, that is used without
-building. The wheel contains the shared libraries that the module links, except those of the C and C++ runtimes.
+building. The wheel has the package, its library, the program with its manual pages, and serves every Python. If library and
+program need nothing but the C library (CMAKE_ARGS=-DMBK_STATIC=FOLDER), its tag says from which version on; otherwise it is
+for the machine that it was built on.
 """
 
 import base64
@@ -20,7 +22,7 @@ import tempfile
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-RUNTIME = re.compile(r"^(linux-vdso|ld-linux.*|lib(c|m|dl|rt|pthread|gcc_s|stdc\+\+))\.so")
+OF_C = re.compile(r"^(ld-linux.*|lib(c|m|dl|rt|pthread|gcc_s))\.so")  # what every Linux has
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the same tree gives the same wheel
 
 
@@ -32,9 +34,25 @@ def version():
     return re.search(r"project\(mbk VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
 
 
-def tag():
-    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    return f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+def needed(binary):
+    """Libraries that a binary links, and the newest version of glibc that its symbols ask for: (2, 34)."""
+    links = re.findall(r"NEEDED\s+(\S+)", objdump("--private-headers", binary))
+    symbols = re.findall(r"\bGLIBC_([\d.]+)", objdump("--dynamic-syms", binary))
+    return links, max(tuple(map(int, one.split("."))) for one in symbols)
+
+
+def objdump(option, binary):
+    return subprocess.run(["objdump", option, binary], check=True, capture_output=True, text=True).stdout
+
+
+def tag(binaries):
+    """Tag of a wheel with these binaries."""
+    platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    found = [needed(one) for one in binaries]
+    if all(OF_C.match(link) for links, _ in found for link in links):
+        major, minor = max(version for _, version in found)
+        platform = platform.replace("linux_", f"manylinux_{major}_{minor}_", 1)
+    return f"py3-none-{platform}"
 
 
 def metadata():
@@ -64,43 +82,25 @@ def built(settings):
     run("cmake", "-S", ROOT, "-B", folder, *generator, "-DCMAKE_BUILD_TYPE=Release", "-DMBK_BUILD_TESTS=OFF",
         "-DMBK_PYTHON=ON", f"-DPython3_EXECUTABLE={getattr(sys, '_base_executable', sys.executable)}",
         *shlex.split(os.environ.get("CMAKE_ARGS", "")))
-    run("cmake", "--build", folder, "--parallel", "--target", "mbk_python_package")
+    run("cmake", "--build", folder, "--parallel", "--target", "mbk_python_package", "mbk_texts", "mbk_misbehaving_robot")
     return folder
 
 
 def staged(build, folder):
-    """Installs the package below `folder` and returns its path."""
-    run("cmake", "--install", build, "--component", "python", "--strip", "--prefix", folder)
+    """Installs what the wheel has below `folder`. Returns {path in the wheel: file}."""
+    for component in ("c", "program", "python"):
+        run("cmake", "--install", build, "--component", component, "--strip", "--prefix", folder)
     package = next(folder.rglob("mbk/__init__.py")).parent
-    bundle(package)
-    return package
+    files = {f"mbk/{one.relative_to(package).as_posix()}": one for one in package.rglob("*")}
+    files["mbk/libmbk.so.1"] = next(one for one in folder.rglob("libmbk.so.1") if one.exists())
+    # The program stands with the commands of Python, its pages where `man` looks beside these.
+    files |= {f"mbk-{version()}.data/scripts/{one.name}": one for one in folder.glob("bin/mbk*")}
+    files |= {f"mbk-{version()}.data/data/share/man/man1/{one.name}": one for one in folder.glob("share/man/man1/*")}
+    return {path: file for path, file in files.items() if file.is_file() and "__pycache__" not in file.parts}
 
 
-def bundle(package):
-    """Copies the shared libraries that the module needs, and writes their load order: each after its dependencies."""
-    module = next(package.glob("_mbk*.so"))
-    paths, order = {}, []
-    for name, path in re.findall(r"(\S+) => (/\S+)", subprocess.run(["ldd", module], check=True, capture_output=True,
-                                                                   text=True).stdout):
-        if not RUNTIME.match(name):
-            paths[name] = path
-
-    def add(name):
-        if name in order:
-            return
-        needed = subprocess.run(["ldd", paths[name]], check=True, capture_output=True, text=True).stdout
-        for one in re.findall(r"(\S+) => /\S+", needed):
-            if one in paths:
-                add(one)
-        order.append(name)
-
-    for name in sorted(paths):
-        add(name)
-    libraries = package / "libraries"
-    libraries.mkdir()
-    for name in order:
-        shutil.copyfile(paths[name], libraries / name)
-    (libraries / "order.txt").write_text("\n".join(order) + "\n", encoding="utf-8")
+def binaries(files):
+    return [file for path, file in files.items() if path == "mbk/libmbk.so.1" or ".data/scripts/" in path]
 
 
 # ---- hooks for pip
@@ -114,25 +114,17 @@ def get_requires_for_build_sdist(config_settings=None):
     return []
 
 
-def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
-    name = f"mbk-{version()}.dist-info"
-    folder = pathlib.Path(metadata_directory, name)
-    folder.mkdir()
-    (folder / "METADATA").write_text(metadata(), encoding="utf-8")
-    (folder / "WHEEL").write_text(wheel_text(), encoding="utf-8")
-    return name
-
-
-def wheel_text():
-    return f"Wheel-Version: 1.0\nGenerator: mbk {version()}\nRoot-Is-Purelib: false\nTag: {tag()}\n"
+def wheel_text(its_tag):
+    return f"Wheel-Version: 1.0\nGenerator: mbk {version()}\nRoot-Is-Purelib: false\nTag: {its_tag}\n"
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    name = f"mbk-{version()}-{tag()}.whl"
     info = f"mbk-{version()}.dist-info"
     records = []
     with tempfile.TemporaryDirectory() as staging:
-        package = staged(built(config_settings), pathlib.Path(staging))
+        files = staged(built(config_settings), pathlib.Path(staging))
+        its_tag = tag(binaries(files))
+        name = f"mbk-{version()}-{its_tag}.whl"
         with zipfile.ZipFile(pathlib.Path(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
 
             def add(path, content, mode=0o644):
@@ -142,14 +134,13 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
                 digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
                 records.append(f"{path},sha256={digest},{len(content)}")
 
-            for file in sorted(one for one in package.rglob("*") if one.is_file()):
-                if "__pycache__" not in file.parts:
-                    add(f"mbk/{file.relative_to(package).as_posix()}", file.read_bytes(),
-                        0o755 if ".so" in file.name else 0o644)
-            for text in ("LICENSE", "THIRD_PARTY_NOTICES.md"):
-                add(f"{info}/{text}", (ROOT / text).read_bytes())
+            executable = binaries(files)
+            for path, file in sorted(files.items()):
+                add(path, file.read_bytes(), 0o755 if file in executable else 0o644)
+            for text in ("LICENSE", "THIRD_PARTY_NOTICES.md", "packaging/copyright"):
+                add(f"{info}/{pathlib.Path(text).name}", (ROOT / text).read_bytes())
             add(f"{info}/METADATA", metadata().encode())
-            add(f"{info}/WHEEL", wheel_text().encode())
+            add(f"{info}/WHEEL", wheel_text(its_tag).encode())
             record = "\n".join([*records, f"{info}/RECORD,,", ""])
             add(f"{info}/RECORD", record.encode())
     return name

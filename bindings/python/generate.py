@@ -3,7 +3,7 @@
 
 usage: generate.py COMMANDS.json FOLDER
 
-Writes to FOLDER, which contains the module _mbk: _functions.py (measure, identify, …) and a module for each command
+Writes to FOLDER, which contains the module _mbk and its library: _functions.py (measure, identify, …) and a module for each command
 with subcommands: robot.py, springs.py, sensor.py, study.py. Names, fixed values, help and needs of options are those of
 --help; texts name options and commands as in Python. Options that only a command line needs (--json, --out for text,
 --quiet, --help) have another form in Python.

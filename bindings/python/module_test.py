@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""The module _mbk: what it gives is what the program gives, to the bit; arrays without a copy; whatever is thrown at it."""
+"""The module _mbk on libmbk.so: what it gives is what the program gives, to the bit; arrays without a copy; whatever is thrown at it."""
 
 import gc
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -222,6 +223,23 @@ class ModuleTest(unittest.TestCase):
         hidden = numpy.ma.array(plain["x"], mask=numpy.arange(count) == 5)
         self.assertTrue(numpy.isnan(_mbk.Recording(dict(plain, x=hidden)).channel("x")[5]))
 
+    def test_whole_numbers_above_2_53(self):
+        """Clocks in nanoseconds since 1970: what doubles leave of them is not lost."""
+        for kind in (numpy.int64, numpy.uint64):
+            clock = numpy.arange(1000, dtype=kind) * kind(1_000_001) + kind(1_700_000_000_123_456_789)
+            x = numpy.sin(numpy.arange(1000) / 50.0)
+            made = _mbk.Recording({"time": clock, "x": x, "F": x}, units={"time": "ns"})
+            _mbk.call("convert", {"overwrite": True}, [made], ["whole.h5"])
+            time = _mbk.read_all(["whole.h5"])[0].channel("time")
+            self.assertTrue(numpy.allclose(time - time[0], numpy.arange(1000) * 1.000001e-3, rtol=0, atol=1e-12))
+        for value in (2**63 - 1, -2**63, 2**53 + 1, -(2**53) - 1, 0):
+            ints = numpy.array([value, 1, -1], dtype=numpy.int64)
+            rests = _mbk._rests(ints, ints.astype(numpy.float64))
+            self.assertEqual(0 if rests is None else rests[0], value - int(float(value)))
+        ints = numpy.array([[2**64 - 1, 2**63 + 1, 2**53 + 1], [1, 2, 3]], dtype=numpy.uint64)
+        expected = [int(one) - int(float(int(one))) for one in ints.ravel(order="F")]
+        self.assertEqual(list(_mbk._rests(ints, ints.astype(numpy.float64))), expected)
+
     def test_units_names_and_maps(self):
         x, force, time = (self.arrays[name] for name in ("hand_x", "force_x", "time"))
         expected = _mbk.call("identify", {}, [_mbk.Recording({"time": time, "x": x, "F": force})]).json
@@ -288,6 +306,9 @@ class ModuleTest(unittest.TestCase):
             self.assert_error(lambda name=command: _mbk.call(name, {}, [], ["log.mat"]), "command", code=2)
         self.assert_error(lambda: _mbk.call("measure", {}, [], ["log.mat\0.txt"]), "byte", code=2)
         self.assert_error(lambda: _mbk.call("measure", {"": 1}, [], ["log.mat"]), "option", code=2)
+        x = numpy.zeros(3)
+        self.assert_error(lambda: _mbk.Recording({"x\0y": x}), "byte", code=2)
+        self.assert_error(lambda: _mbk.Recording({"x": x}, metadata={"a": "b\0c"}), "byte", code=2)
         self.assert_error(lambda: _mbk.read_all(["log.mat"], {"cutoff": 5}), "cutoff", code=2)
         os.link("log.mat", b"\xff.mat")
         self.assertTrue(_mbk.call("info", {"json": False}, [], [b"\xff.mat"]).exit_code == 0)
@@ -299,6 +320,26 @@ class ModuleTest(unittest.TestCase):
         self.assertIsInstance(error, ValueError)
 
     # ---- the process ----
+
+    def test_a_library_that_is_missing_or_too_old_is_one_clear_error(self):
+        source = pathlib.Path(_mbk.__file__)
+        for name, library in (("missing", None), ("broken", b"no library"), ("old", "old")):
+            folder = self.folder / name
+            folder.mkdir()
+            (folder / "_mbk.py").write_bytes(source.read_bytes())
+            if library == "old":
+                if shutil.which("cc") is None:
+                    continue
+                subprocess.run(["cc", "-shared", "-x", "c", "-", "-o", folder / "libmbk.so.1"], check=True,
+                               input=b"int mbk_api_version(void) { return 1; }")
+            elif library is not None:
+                (folder / "libmbk.so.1").write_bytes(library)
+            done = subprocess.run([sys.executable, "-B", "-c", "import _mbk"], capture_output=True, text=True, check=False,
+                                  env={**os.environ, "PYTHONPATH": str(folder), "LD_LIBRARY_PATH": ""})
+            last = done.stderr.splitlines()[-1]
+            if name == "missing" and done.returncode == 0:
+                continue  # the system has one
+            self.assertRegex(last, r"\AImportError: .*libmbk\.so\.1.*; install ")
 
     def test_nothing_is_printed(self):
         code = ("import _mbk, os\n"
@@ -349,6 +390,10 @@ class ModuleTest(unittest.TestCase):
         self.assertEqual(len(steps), 4)
         self.assertEqual(steps[-1][1], 1.0)
         self.assertEqual([done for _, done in steps], sorted(done for _, done in steps))
+
+        def slow(_what, _done):
+            time.sleep(0.06)  # longer than the pause between two questions whether to stop
+        self.assertEqual(_mbk.call("measure", {}, [self.recording] * 3, progress=slow).exit_code, 0)
 
         def ends(_what, _done):
             raise LookupError("enough")

@@ -404,7 +404,7 @@ class Help(Case):
         self.assertIn("mbk.info/1", run("info", "--help").out)
 
     def test_version(self):
-        self.assertRegex(self.fine("--version").out, r"\Ambk \d+\.\d+\.\d+\n\Z")
+        self.assertRegex(self.fine("--version").out, r"\Ambk \d+\.\d+\.\d+\n(commit  .*\n(.+\n)*)?\Z")
 
     def test_help_goes_to_standard_output(self):
         self.assertIn("mbk measure log.mat", self.fine("--help").out)

@@ -65,8 +65,7 @@ class Types(unittest.TestCase):
 
 class Documentation(unittest.TestCase):
     def modules(self):
-        return [mbk, *(importlib.import_module(f"mbk.{one.name}") for one in pkgutil.iter_modules(mbk.__path__)
-                       if one.name != "_mbk")]
+        return [mbk, *(importlib.import_module(f"mbk.{one.name}") for one in pkgutil.iter_modules(mbk.__path__))]
 
     def test_examples_run(self):
         tried = 0

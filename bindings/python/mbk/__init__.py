@@ -15,10 +15,9 @@ M ẍ + B ẋ + K (x − x₀) = −F. Units are SI and radians.
 
 from __future__ import annotations
 
-from mbk import _libraries
+from mbk import _interpreter
 
-_libraries.refuse_sub_interpreter()
-_libraries.load()
+_interpreter.refuse_sub_interpreter()
 
 from mbk import _mbk, robot, sensor, springs, study
 from mbk._documents import (

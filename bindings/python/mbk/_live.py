@@ -16,13 +16,13 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from mbk import _documents, _errors
 
 if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.figure
+    import numpy.typing as npt
 
 COLUMNS = ("time", "hand_x", "hand_y", "force_x", "force_y", "reference_x", "reference_y", "acceleration_x",
            "acceleration_y", "torque_1", "torque_2", "compute_us", "lateness_us")

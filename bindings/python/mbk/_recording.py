@@ -10,19 +10,20 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from mbk import _errors, _mbk, _tables
 
 if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.figure
+    import numpy.typing as npt
     import pandas
     import xarray
 
     from mbk._documents import Information
 
-Array = npt.NDArray[np.float64]
+    Array = npt.NDArray[np.float64]
+
 _TIMES = frozenset(("time", "t"))
 _ALIAS = re.compile(r"t|x|y|a|F|xr|yr|Fx|Fy|ax|ay|Vx|Vy|(?:q|tau|qr)[1-8]")  # names that carry no unit
 

@@ -45,6 +45,8 @@ class InMemory {
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
   [[nodiscard]] const std::map<std::string, std::string>& metadata() const { return metadata_; }
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
+  /// Of `of(Recording)`; otherwise nullptr.
+  [[nodiscard]] const std::shared_ptr<const Recording>& recording() const { return recording_; }
   /// By the name of a signal or of its channel; nullptr if there is none.
   [[nodiscard]] const Signal* find(std::string_view name) const;
 

@@ -1,20 +1,9 @@
-"""Loads the shared libraries that a wheel contains for the C++ module, so that the system need not have them."""
+"""Which interpreters mbk works in."""
 
 from __future__ import annotations
 
-import ctypes
 import importlib
-import pathlib
 from typing import Any
-
-
-def load() -> None:
-    """Loads each library after its dependencies. A library that the process has already loaded by that name is kept."""
-    folder = pathlib.Path(__file__).resolve().parent / "libraries"
-    order = folder / "order.txt"
-    if order.exists():
-        for name in order.read_text(encoding="utf-8").split():
-            ctypes.CDLL(str(folder / name))
 
 
 def refuse_sub_interpreter() -> None:

@@ -1,0 +1,48 @@
+# What mbk stands on, from one folder of static libraries instead of the system's packages: headers in MBK_STATIC/include,
+# libraries in MBK_STATIC/lib. tools/third-party makes it.
+if(MBK_BUILD_TESTS)
+  message(FATAL_ERROR "The tests need the system's packages: build them without MBK_STATIC")
+endif()
+if(NOT EXISTS ${MBK_STATIC}/lib/libfmt.a)
+  message(FATAL_ERROR "There are no libraries in ${MBK_STATIC}; tools/third-party makes them")
+endif()
+
+# mbk_archive(TARGET FILE... [HEADERS FOLDER...]): the libraries FILE as TARGET.
+function(mbk_archive target)
+  cmake_parse_arguments(ARG "" "" "HEADERS;LINKS" ${ARGN})
+  add_library(${target} INTERFACE IMPORTED)
+  target_include_directories(${target} SYSTEM INTERFACE ${MBK_STATIC}/include)
+  foreach(folder IN LISTS ARG_HEADERS)
+    target_include_directories(${target} SYSTEM INTERFACE ${MBK_STATIC}/include/${folder})
+  endforeach()
+  foreach(file IN LISTS ARG_UNPARSED_ARGUMENTS)
+    target_link_libraries(${target} INTERFACE ${MBK_STATIC}/lib/${file})
+  endforeach()
+  target_link_libraries(${target} INTERFACE ${ARG_LINKS})
+endfunction()
+
+mbk_archive(Eigen3::Eigen HEADERS eigen3)
+mbk_archive(tl::expected)
+mbk_archive(nlohmann_json::nlohmann_json)
+mbk_archive(CLI11::CLI11)
+mbk_archive(Boost::headers)
+mbk_archive(mbk_tomlplusplus)
+mbk_archive(fmt::fmt libfmt.a)
+mbk_archive(ZLIB::ZLIB libz.a)
+mbk_archive(BZip2::BZip2 libbz2.a)
+mbk_archive(PkgConfig::LIBDEFLATE libdeflate.a)
+mbk_archive(PkgConfig::LIBLZF liblzf.a HEADERS liblzf)
+mbk_archive(PkgConfig::MINIZIP libminizip.a LINKS ZLIB::ZLIB)
+mbk_archive(PkgConfig::PUGIXML libpugixml.a)
+mbk_archive(PkgConfig::LIBZSTD libzstd.a)
+mbk_archive(PkgConfig::LIBLZ4 liblz4.a)
+mbk_archive(SQLite::SQLite3 libsqlite3.a)
+mbk_archive(SQLiteCpp libSQLiteCpp.a LINKS SQLite::SQLite3)
+mbk_archive(PkgConfig::OROCOS_KDL liborocos-kdl.a HEADERS eigen3)
+mbk_archive(urdfdom::urdfdom_model liburdfdom_model.a libconsole_bridge.a libtinyxml.a)
+
+if(NOT WIN32)
+  # A name that the process has loaded already must not replace one of these. libgcc_s stays: glibc brings it along, and
+  # its static form would need glibc 2.35.
+  add_link_options(-static-libstdc++ -Wl,--exclude-libs,ALL)
+endif()
