@@ -54,6 +54,9 @@ class Case(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.environment = wine_environment()
+        # Wine fills its folder at the first call, and says so.
+        subprocess.run([WINE, WINDOWS, "--version"], env=cls.environment, stdin=subprocess.DEVNULL, timeout=600,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="mbk-windows-"))
