@@ -9,6 +9,23 @@ function(mbk_is_header_only library result)
   endif()
 endfunction()
 
+# mbk_of_this_system(SOURCES): without name_windows.cpp, or on Windows without name_posix.cpp. What names a system call
+# stands in such a file; its headers give strange words to macros, so that it is compiled alone.
+function(mbk_of_this_system list_name)
+  set(kept ${${list_name}})
+  if(WIN32)
+    list(FILTER kept EXCLUDE REGEX "_posix\\.cpp$")
+    set(own ${kept})
+    list(FILTER own INCLUDE REGEX "_windows\\.cpp$")
+    if(own)
+      set_source_files_properties(${own} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+  else()
+    list(FILTER kept EXCLUDE REGEX "_windows\\.cpp$")
+  endif()
+  set(${list_name} ${kept} PARENT_SCOPE)
+endfunction()
+
 # One module = one small library in mbk/<wing>/<name>: name.h, name.cpp and name_test.cpp side by side.
 #
 #   mbk_module(identify DEPENDS core numeric trial [LIBRARIES PkgConfig::MATIO])
@@ -29,6 +46,7 @@ function(mbk_module name)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  mbk_of_this_system(sources)
   list(APPEND sources ${ARG_SOURCES})
 
   set(private_libraries "")

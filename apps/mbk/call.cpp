@@ -153,12 +153,7 @@ Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vec
 
   auto prepared = std::make_shared<Prepared>();
   prepared->json = can && std::ranges::find(typed, "--json") != typed.end();
-  std::vector<char*> argv;
-  std::string program = "mbk";
-  argv.push_back(program.data());
-  for (std::string& word : typed) argv.push_back(word.data());
-  prepared->actions =
-      add_commands(first, prepared->parser.command(), command_line(static_cast<int>(argv.size()), argv.data()));
+  prepared->actions = add_commands(first, prepared->parser.command(), command_line(typed));
   MBK_TRY(parse(prepared->parser, typed, fmt::format("see 'mbk {} --help'", call.command)));
   return std::shared_ptr<const Prepared>(std::move(prepared));
 }

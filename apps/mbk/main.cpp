@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,10 +21,12 @@
 #include "apps/mbk/terminal/help.h"
 #include "apps/mbk/terminal/last_words.h"
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/terminal/process.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/base/core/vector4.h"
 #include "mbk/base/core/words.h"
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/process.h"
+#include "mbk/base/system/terminal.h"
 
 namespace {
 
@@ -36,12 +37,7 @@ std::string one_line(const mbk::app::NotTaken& why) {
 
 /// On standard error when there is no memory to format a line. What cannot be written is lost; the exit code remains.
 void say_plainly(std::string_view text) noexcept {
-  while (!text.empty()) {
-    const ssize_t wrote = write(STDERR_FILENO, text.data(), text.size());
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote <= 0) return;
-    text.remove_prefix(static_cast<std::size_t>(wrote));
-  }
+  static_cast<void>(mbk::system::write_all(mbk::system::kError, std::as_bytes(std::span(text))));
 }
 
 constexpr std::string_view kNoMemory =
@@ -78,7 +74,8 @@ void keep_freed_memory() {
 #endif
 }
 
-int run(int argc, char** argv) {
+/// @param words  of the command line, behind the program's name
+int run(const std::vector<std::string>& words) {
   keep_freed_memory();
   const char* const simd = std::getenv("MBK_SIMD");
   if (simd != nullptr && !mbk::value_of<mbk::Simd>(simd)) {
@@ -97,9 +94,9 @@ int run(int argc, char** argv) {
   app.require_subcommand();
   mbk::app::add_help(app);
 
-  const std::string_view first = argc > 1 ? argv[1] : "";
-  const mbk::app::Actions commands = mbk::app::add_commands(first, app, mbk::app::command_line(argc, argv));
-  if (const auto taken = parser.parse({argv + std::min(argc, 1), argv + argc}); !taken) {
+  const std::string_view first = words.empty() ? "" : std::string_view(words.front());
+  const mbk::app::Actions commands = mbk::app::add_commands(first, app, mbk::app::command_line(words));
+  if (const auto taken = parser.parse(words); !taken) {
     const mbk::app::NotTaken& why = taken.error();
     if (!why.answer) {
       mbk::app::say_text(mbk::printable_lines(one_line(why)));
@@ -114,9 +111,9 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  mbk::app::prepare_process();
+  if (!mbk::system::prepare_streams()) std::_Exit(mbk::app::kBadData);  // nobody can be told
   try {
-    return mbk::app::ended(run(argc, argv));
+    return mbk::app::ended(run(mbk::system::arguments(argc, argv)));
   } catch (const std::bad_alloc&) {
     say_plainly(kNoMemory);
   } catch (const std::exception& error) {

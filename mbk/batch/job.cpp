@@ -1,10 +1,6 @@
 #include "mbk/batch/job.h"
 
-#include <elf.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <link.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -14,11 +10,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <span>
 #include <sstream>
 #include <system_error>
 
 #include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/process.h"
 #include "mbk/batch/job_status.h"
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
@@ -32,49 +31,18 @@ constexpr const char *kJob = "job.json", *kUnits = "units.txt", *kChunks = "chun
 // A line of chunks.txt has this many characters, so that a task reads its own alone.
 constexpr std::size_t kChunkLine = 64;
 
-/// The note that the linker leaves in every program it makes, as hexadecimal digits.
-int find_build(dl_phdr_info* object, std::size_t /*bytes*/, void* found) {
-  for (int k = 0; k < object->dlpi_phnum; ++k) {
-    const auto& segment = object->dlpi_phdr[k];
-    if (segment.p_type != PT_NOTE) continue;
-    const auto* at = reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr);
-    const char* const end = at + segment.p_memsz;
-    while (at + sizeof(ElfW(Nhdr)) <= end) {
-      ElfW(Nhdr) note;
-      std::memcpy(&note, at, sizeof note);
-      const auto padded = [](std::size_t n) { return (n + 3) / 4 * 4; };
-      const char* const name = at + sizeof note;
-      const char* const content = name + padded(note.n_namesz);
-      if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4 && std::memcmp(name, "GNU", 4) == 0) {
-        std::string& text = *static_cast<std::string*>(found);
-        for (std::size_t b = 0; b < note.n_descsz; ++b) {
-          text += fmt::format("{:02x}", static_cast<unsigned char>(content[b]));
-        }
-        return 1;
-      }
-      at = content + padded(note.n_descsz);
-    }
-  }
-  return 1;  // the first object is the program itself
-}
-
 /// Writes a file that appears whole or not at all.
 Result<void> write_whole(const fs::path& file, std::string_view text) {
-  const fs::path part = file.parent_path() / fmt::format(".{}.{}.part", file.filename().string(), ::getpid());
-  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  int code = descriptor < 0 ? errno : 0;
-  while (code == 0 && !text.empty()) {
-    const ssize_t wrote = ::write(descriptor, text.data(), text.size());
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote <= 0) code = wrote < 0 ? errno : ENOSPC;
-    if (wrote > 0) text.remove_prefix(static_cast<std::size_t>(wrote));
-  }
-  if (code == 0 && ::fsync(descriptor) != 0) code = errno;
-  if (descriptor >= 0 && ::close(descriptor) != 0 && code == 0) code = errno;
+  const fs::path part = file.parent_path() / fmt::format(".{}.{}.part", file.filename().string(), system::process_id());
+  system::remove_name(part);  // of a process of that number that went down
+  system::OpenFile out = system::create_new(part);
+  int code = out ? system::write_all(out.number(), std::as_bytes(std::span(text))) : errno;
+  if (code == 0) code = system::flush(out);
+  if (const int closed = out.close(); code == 0) code = closed;
   if (code != 0) {
-    ::unlink(part.c_str());
+    system::remove_name(part);
     return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
-                    code == ENOSPC || code == EDQUOT ? "free space on the disk" : "check the permissions of the folder",
+                    system::is_full(code) ? "free space on the disk" : "check the permissions of the folder",
                     file.string());
   }
   return files::rename_on_disk(part, file);
@@ -120,8 +88,7 @@ Result<Job> job_from(const fs::path& file) {
 
 std::string program_identity() {
   static const std::string kIdentity = [] {
-    std::string build;
-    dl_iterate_phdr(find_build, &build);
+    const std::string build = system::build_identity();
     return fmt::format("{} {}", version(), build.empty() ? "without a build identity" : build);
   }();
   return kIdentity;

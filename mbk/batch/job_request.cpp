@@ -1,7 +1,6 @@
 #include "mbk/batch/job_request.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "mbk/base/system/process.h"
 #include "mbk/batch/merge.h"
 #include "mbk/files/contents/sha256.h"
 
@@ -47,10 +47,8 @@ Measured measured_cost(const JobRequest& request) {
   }
   Measured measured;
   measured.s_per_weight = std::max(taken_since(begin), 1e-6) / weight;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  constexpr std::int64_t kKilobytes = 1024, kBeside = 256;  // half as much again, and [MB]
-  measured.memory_mb = usage.ru_maxrss * 3 / (2 * kKilobytes) + kBeside;
+  constexpr std::int64_t kMegabyte = std::int64_t{1} << 20, kBeside = 256;  // half as much again, and [MB]
+  measured.memory_mb = system::peak_memory() * 3 / (2 * kMegabyte) + kBeside;
   return measured;
 }
 

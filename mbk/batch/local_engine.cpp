@@ -1,12 +1,11 @@
 // Chunks as processes on this machine, so many at a time.
 #include <fmt/format.h>
-#include <signal.h>  // NOLINT(modernize-deprecated-headers): SIGTERM
 
 #include <algorithm>
 #include <deque>
 #include <thread>
 
-#include "mbk/batch/child_process.h"
+#include "mbk/base/system/child_process.h"
 #include "mbk/batch/engines.h"
 
 namespace mbk::batch {
@@ -43,14 +42,14 @@ class LocalEngine : public Engine {
     for (const std::int64_t chunk : chunks) {
       std::erase(waiting_, chunk);
       const auto found = running_.find(chunk);
-      if (found != running_.end()) found->second.send(SIGKILL);
+      if (found != running_.end()) found->second.send(system::Signal::kill);
     }
     reap();
   }
 
   void cancel_all() override {
     waiting_.clear();
-    for (const auto& [chunk, process] : running_) process.send(SIGTERM);
+    for (const auto& [chunk, process] : running_) process.send(system::Signal::terminate);
     for (auto& [chunk, process] : running_) std::ignore = process.wait(2.0);
     running_.clear();  // what still runs is killed
   }
@@ -80,7 +79,7 @@ class LocalEngine : public Engine {
       std::vector<std::string> command = command_;
       command.push_back("--chunk");
       command.push_back(std::to_string(chunk));
-      auto process = MBK_TRY(ChildProcess::start(command, log_of(chunk)));
+      auto process = MBK_TRY(system::ChildProcess::start(command, log_of(chunk)));
       waiting_.pop_front();
       running_.emplace(chunk, std::move(process));
     }
@@ -91,7 +90,7 @@ class LocalEngine : public Engine {
   std::vector<std::string> command_;
   std::size_t tasks_;
   std::deque<std::int64_t> waiting_;
-  std::map<std::int64_t, ChildProcess> running_;
+  std::map<std::int64_t, system::ChildProcess> running_;
   std::map<std::int64_t, int> ended_;
 };
 

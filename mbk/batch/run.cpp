@@ -1,9 +1,6 @@
 #include "mbk/batch/run.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,9 +9,12 @@
 #include <fstream>
 #include <optional>
 #include <set>
+#include <span>
 #include <system_error>
 #include <thread>
 
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/process.h"
 #include "mbk/batch/merge.h"
 #include "mbk/batch/shard.h"
 #include "mbk/batch/work.h"
@@ -35,38 +35,33 @@ class Keeper {
  public:
   static Result<Keeper> take(const JobFolder& folder) {
     const fs::path file = folder.folder() / "keeper";
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    if (descriptor < 0) {
+    Keeper keeper(system::create_or_open(file));
+    if (!keeper.lock_) {
       return bad_data(fmt::format("cannot be locked: {}", std::generic_category().message(errno)),
                       "check the permissions of the folder", file.string());
     }
-    Keeper keeper(descriptor);
-    std::array<char, 256> text{};
     // A program that a killed process was about to start holds its lock for a moment longer.
     bool taken = false;
     for (const auto begin = Clock::now(); !taken && seconds_since(begin) < 1.0;) {
-      taken = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+      taken = system::try_lock(keeper.lock_, system::Lock::alone) == 0;
       if (!taken) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     if (!taken) {
-      const ssize_t got = ::read(descriptor, text.data(), text.size() - 1);
+      std::array<char, 256> text{};
+      const auto got = system::read_some(keeper.lock_.number(), text.data(), text.size() - 1);
       return bad_data(fmt::format("another mbk is running this job{}{}", got > 0 ? ": " : "", text.data()),
                       "wait for it, or end it; running tasks continue", folder.folder().string());
     }
-    std::ignore = ::gethostname(text.data(), text.size() - 1);
-    const std::string who = fmt::format("process {} on {}", ::getpid(), text.data());
-    if (::ftruncate(descriptor, 0) == 0) std::ignore = ::write(descriptor, who.data(), who.size());
+    const std::string who = fmt::format("process {} on {}", system::process_id(), system::host_name());
+    if (system::cut(keeper.lock_, 0) == 0) {
+      std::ignore = system::write_all(keeper.lock_.number(), std::as_bytes(std::span(who)));
+    }
     return keeper;
-  }
-  Keeper(Keeper&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Keeper& operator=(Keeper&&) = delete;
-  ~Keeper() {
-    if (descriptor_ >= 0) ::close(descriptor_);
   }
 
  private:
-  explicit Keeper(int descriptor) : descriptor_(descriptor) {}
-  int descriptor_;
+  explicit Keeper(system::OpenFile lock) : lock_(std::move(lock)) {}
+  system::OpenFile lock_;
 };
 
 /// What is known of a chunk.

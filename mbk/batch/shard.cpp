@@ -1,9 +1,7 @@
 #include "mbk/batch/shard.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <libdeflate.h>
-#include <unistd.h>
 
 #include <array>
 #include <bit>
@@ -48,8 +46,8 @@ double now() {
 
 tl::unexpected<Error> not_written(const fs::path& file, int code) {
   return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
-                  code == ENOSPC || code == EDQUOT ? "free space on the disk; finished chunks are kept"
-                                                   : "check the disk and the permissions of the folder",
+                  system::is_full(code) ? "free space on the disk; finished chunks are kept"
+                                        : "check the disk and the permissions of the folder",
                   file.string());
 }
 
@@ -75,20 +73,18 @@ std::string shard_stem(std::int64_t chunk, const std::string& token) {
   return fmt::format("{:06}.{}", chunk, token);
 }
 
-ShardWriter::ShardWriter(fs::path part, fs::path whole, int descriptor)
-    : part_(std::move(part)), whole_(std::move(whole)), descriptor_(descriptor), last_write_(now()) {}
+ShardWriter::ShardWriter(fs::path part, fs::path whole, system::OpenFile out)
+    : part_(std::move(part)), whole_(std::move(whole)), out_(std::move(out)), last_write_(now()) {}
 
-ShardWriter::~ShardWriter() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
+ShardWriter::~ShardWriter() = default;
 
 Result<std::unique_ptr<ShardWriter>> ShardWriter::create(const fs::path& folder, const ShardHeader& header) {
   const std::string stem = shard_stem(header.chunk, header.token);
   fs::path part = folder / (stem + std::string(kPartEnd));
-  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0600);
-  if (descriptor < 0) return not_written(part, errno);
+  system::OpenFile out = system::create_new(part);
+  if (!out) return not_written(part, errno);
   std::unique_ptr<ShardWriter> writer(
-      new ShardWriter(std::move(part), folder / (stem + std::string(kShardEnd)), descriptor));
+      new ShardWriter(std::move(part), folder / (stem + std::string(kShardEnd)), std::move(out)));
   writer->waiting_ = kMagic;
   writer->append(RecordKind::header, 0, to_json(header));
   MBK_TRY(writer->sync());
@@ -104,19 +100,11 @@ void ShardWriter::append(RecordKind kind, std::uint64_t unit, std::string_view p
 
 Result<void> ShardWriter::write_waiting() {
   last_write_ = now();
-  if (descriptor_ < 0) return bad_data("the shard is closed", "", part_.string());
-  std::string_view left = waiting_;
-  while (!left.empty()) {
-    const ssize_t wrote = ::write(descriptor_, left.data(), left.size());
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote <= 0) {
-      const int code = wrote < 0 ? errno : ENOSPC;
-      waiting_.erase(0, waiting_.size() - left.size());  // so that it could go on where it ended
-      return not_written(part_, code);
-    }
-    left.remove_prefix(static_cast<std::size_t>(wrote));
-  }
-  waiting_.clear();
+  if (!out_) return bad_data("the shard is closed", "", part_.string());
+  std::size_t wrote = 0;
+  const int code = system::write_all(out_.number(), std::as_bytes(std::span(waiting_)), &wrote);
+  waiting_.erase(0, wrote);  // so that it could go on where it ended
+  if (code != 0) return not_written(part_, code);
   return {};
 }
 
@@ -136,9 +124,7 @@ Result<void> ShardWriter::flush() {
 Result<void> ShardWriter::sync() {
   const std::lock_guard lock(mutex_);
   MBK_TRY(write_waiting());
-  while (::fsync(descriptor_) != 0) {
-    if (errno != EINTR) return not_written(part_, errno);
-  }
+  if (const int code = system::flush(out_); code != 0) return not_written(part_, code);
   return {};
 }
 
@@ -146,8 +132,7 @@ Result<void> ShardWriter::finish(std::string_view end) {
   MBK_TRY(add(RecordKind::end, 0, end));
   MBK_TRY(sync());
   const std::lock_guard lock(mutex_);
-  const int closed = ::close(std::exchange(descriptor_, -1));
-  if (closed != 0) return not_written(part_, errno);
+  if (const int code = out_.close(); code != 0) return not_written(part_, code);
   return files::rename_on_disk(part_, whole_);
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/system/files.h"
 
 /// Work that is cut into chunks, which processes on one machine or on many do, each into a file of its own.
 namespace mbk::batch {
@@ -72,13 +73,13 @@ class ShardWriter {
   [[nodiscard]] const std::filesystem::path& part() const { return part_; }
 
  private:
-  ShardWriter(std::filesystem::path part, std::filesystem::path whole, int descriptor);
+  ShardWriter(std::filesystem::path part, std::filesystem::path whole, system::OpenFile out);
   Result<void> write_waiting();
   void append(RecordKind kind, std::uint64_t unit, std::string_view payload);
 
   std::mutex mutex_;
   std::filesystem::path part_, whole_;
-  int descriptor_;
+  system::OpenFile out_;
   std::string waiting_;
   double last_write_;
 };

@@ -10,12 +10,24 @@
 #include <thread>
 
 #include "mbk/base/core/printable.h"
-#include "mbk/batch/command_output.h"
+#include "mbk/base/system/command_output.h"
 #include "mbk/batch/engines.h"
 #include "mbk/files/contents/sha256.h"
 
 namespace mbk::batch {
 namespace {
+
+/// For a shell: 'a b'.
+std::string shell_quoted(const std::string& word) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("-_./=:,@+").find(c) != std::string_view::npos;
+  };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
 
 namespace fs = std::filesystem;
 
@@ -23,7 +35,7 @@ constexpr double kAnswer = 60.0;  // [s] until a controller must have answered
 
 /// Runs a command of Slurm.
 Result<std::string> ask(const std::vector<std::string>& command) {
-  const auto said = MBK_TRY(command_output(command, kAnswer));
+  const auto said = MBK_TRY(system::command_output(command, kAnswer));
   if (said.code == 0) return said.out;
   const auto begin = said.error.find("error: ");  // warnings and news may stand before it
   const auto line = said.error.substr(begin == std::string::npos ? 0 : begin);

@@ -1,8 +1,6 @@
 #include "mbk/batch/work.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +13,7 @@
 #include <thread>
 
 #include "mbk/base/realtime/rest.h"
+#include "mbk/base/system/process.h"
 #include "mbk/batch/merge.h"
 #include "mbk/batch/shard.h"
 
@@ -23,20 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
-double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 /// What processes left that ended before the chunk did.
 struct Remains {
@@ -125,7 +110,7 @@ Result<ChunkDone> work(const JobFolder& folder, std::int64_t number, const UnitF
   const Remains remains = remains_of(folder, chunk);
 
   std::random_device lot;
-  ShardHeader header{folder.job().id, folder.job().program, number, host_name(), ::getpid()};
+  ShardHeader header{folder.job().id, folder.job().program, number, system::host_name(), system::process_id()};
   header.token = fmt::format("{:08x}{:08x}", lot(), lot());
   auto shard = MBK_TRY(ShardWriter::create(folder.shards(), header));
   const auto begin = Clock::now();
@@ -161,7 +146,7 @@ Result<ChunkDone> work(const JobFolder& folder, std::int64_t number, const UnitF
                               {"units", done.units},
                               {"failed", done.failed},
                               {"wall_s", std::chrono::duration<double>(Clock::now() - begin).count()},
-                              {"cpu_s", cpu_seconds()}};
+                              {"cpu_s", system::cpu_seconds()}};
   MBK_TRY(shard->finish(end.dump()));
   return done;
 }

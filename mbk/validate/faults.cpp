@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "mbk/base/core/temporary_folder.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/base/realtime/clock.h"
+#include "mbk/base/system/temporary_folder.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/files/journal/journal.h"

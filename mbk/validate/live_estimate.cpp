@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "mbk/base/core/temporary_folder.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/base/system/temporary_folder.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/measure/identify/impedance_fit.h"

@@ -1,7 +1,6 @@
 #include "mbk/validate/udp_faults.h"
 
 #include <fmt/format.h>
-#include <signal.h>  // NOLINT(modernize-deprecated-headers): SIGTERM
 
 #include <algorithm>
 #include <chrono>
@@ -12,12 +11,12 @@
 #include <sstream>
 #include <thread>
 
-#include "mbk/base/core/temporary_folder.h"
 #include "mbk/base/core/words.h"
 #include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/batch/child_process.h"
+#include "mbk/base/system/child_process.h"
+#include "mbk/base/system/temporary_folder.h"
 #include "mbk/experiment/safety/gate.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/validate/rows.h"
@@ -202,25 +201,25 @@ class Runner {
     } else if (job.run % 2 == 1) {
       command.insert(command.end(), {"--version", "2"});
     }
-    auto robot = MBK_TRY(batch::ChildProcess::start(command, file("-robot.log")));
+    auto robot = MBK_TRY(system::ChildProcess::start(command, file("-robot.log")));
     if (!wait_until([&] { return port_of(file("-robot.log")).has_value(); }, kPatience)) {
       return bad_data("the robot does not listen: " + text_of(file("-robot.log")), "", command.front());
     }
     std::ofstream(file(".toml")) << experiment << "[device]\nkind = \"udp\"\nforce_latency_ticks = 1\nport = "
                                  << port_of(file("-robot.log")).value_or(0) << "\n";
-    auto mbk = MBK_TRY(batch::ChildProcess::start({options_->program.string(), "run", file(".toml").string(),
-                                                   "--no-measure", "--quiet", "--out", file(".h5").string()},
-                                                  file(".log")));
+    auto mbk = MBK_TRY(system::ChildProcess::start({options_->program.string(), "run", file(".toml").string(),
+                                                    "--no-measure", "--quiet", "--out", file(".h5").string()},
+                                                   file(".log")));
     if (key) {
       // Somebody stops the trial.
       wait_until([&] { return read_truth(file("-robot.log")).motors_on >= 0; }, kPatience);
       std::this_thread::sleep_for(std::chrono::duration<double>(std::max(moment, kMovingIn + 0.1)));
-      mbk.send(SIGINT);
+      mbk.send(system::Signal::interrupt);
     }
     const auto code = mbk.wait(kTrial - kPerturbed + perturbed + kPatience);
     // What the motors do once nobody is there any more.
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    robot.send(SIGTERM);
+    robot.send(system::Signal::terminate);
     if (!robot.wait(kPatience)) return bad_data("the robot's program does not end", "", command.front());
 
     FaultOutcome outcome;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,7 +14,7 @@ namespace mbk::app {
 using Action = std::function<int()>;
 
 /// The command line as it was typed, quoted for a shell, to run it again.
-std::string command_line(int argc, char** argv);
+std::string command_line(std::span<const std::string> words);
 
 /// The action of each subcommand, by name.
 using Actions = std::vector<std::pair<std::string, Action>>;

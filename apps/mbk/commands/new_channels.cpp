@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "apps/mbk/terminal/terminal.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
+#include "mbk/base/system/terminal.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/guess_channels.h"
 #include "mbk/files/recording/read.h"
@@ -152,7 +152,7 @@ Result<Recording> read_with(const recording::RecordingFile& file, const NewChann
 
 /// Shows what a person needs to see before answering.
 void tell(const std::string& text) {
-  say_text(for_people(text, terminal_at(STDERR_FILENO)));
+  say_text(for_people(text, terminal_at(system::kError)));
 }
 
 int run(const NewChannelsArguments& arguments) {
@@ -168,7 +168,7 @@ int run(const NewChannelsArguments& arguments) {
   }
   const ChannelGuess guess = recording::guess_channels(signals);
   tell(fmt::format("{}   {}\n\n{}", arguments.file.string(), contents->format, guess_text(signals, guess, arguments)));
-  const bool by_person = ::isatty(STDIN_FILENO) == 1;
+  const bool by_person = system::is_terminal(system::kInput);
   const bool ask = !arguments.yes && (by_person || std::cin.peek() != std::istream::traits_type::eof());
   if (!ask && !guess.missing.empty()) {
     return report_error(
@@ -205,7 +205,7 @@ int run(const NewChannelsArguments& arguments) {
   if (!axes) return report_error(axes.error());
   const std::string option = fmt::format("--channels {}{}{}", shell_word(map), rate, *axes);
   say("\nmbk measure {} {}\n", shell_word(arguments.file.string()), option);
-  if (!arguments.output.file && terminal_at(STDOUT_FILENO).there) return kFine;  // the person sees it in that line
+  if (!arguments.output.file && terminal_at(system::kOutput).there) return kFine;  // the person sees it in that line
   if (auto ok = arguments.output.write(option + "\n", {arguments.file}); !ok) return report_error(ok.error());
   return kFine;
 }

@@ -392,7 +392,7 @@ Action add_run(Command app) {
       .type_name("NAME");
   command.add_option("--seed", arguments->seed, "random seed; overrides the experiment file")
       .type_name("N")
-      .check(whole_number(0, std::numeric_limits<long>::max()));
+      .check(whole_number(0, std::numeric_limits<std::int64_t>::max()));
   command.add_option("--participant", arguments->person, "number of the participant; overrides the experiment file")
       .type_name("N")
       .check(whole_number(1, 999'999));

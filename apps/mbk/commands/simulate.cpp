@@ -168,7 +168,7 @@ Action add_simulate(Command app) {
       .type_name("NAME");
   command.add_option("--seed", arguments->seed, "random seed; overrides the scenario file")
       .type_name("N")
-      .check(whole_number(0, std::numeric_limits<long>::max()));
+      .check(whole_number(0, std::numeric_limits<std::int64_t>::max()));
   command.add_option("--seeds", arguments->seeds, "number of recordings, with consecutive seeds (default: 1)")
       .type_name("N")
       .check(whole_number(1, 100'000));

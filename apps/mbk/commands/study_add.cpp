@@ -120,7 +120,7 @@ OptionCheck rater_code() {
 
 void add_fact_options(Command command, AddArguments& arguments) {
   KnownFacts& facts = arguments.facts;
-  constexpr long kLargest = 999999999;
+  constexpr std::int64_t kLargest = 999999999;
   command.add_option("--session", facts.session, "number of the participant's session (default: as recorded, or 1)")
       .type_name("N")
       .check(whole_number(1, kLargest));
@@ -162,7 +162,7 @@ Action add_study_add(Command group) {
       "file is not stored twice. The default options of the study (mbk study defaults) determine how it\n"
       "is read.");
   command.add_option("FILE", arguments->files, "recordings: " + recording::readable_files()).required();
-  constexpr long kLargest = 999999999;
+  constexpr std::int64_t kLargest = 999999999;
   command.add_option("--participant", arguments->facts.participant, "number of the participant, never a name")
       .type_name("N")
       .check(whole_number(1, kLargest));

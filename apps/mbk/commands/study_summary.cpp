@@ -283,7 +283,7 @@ Action add_study_summary(Command group) {
           .check(whole_number(1000, 100'000));
   command.add_option("--seed", arguments->seed, "random seed of the bootstrap (default: 1)")
       .type_name("N")
-      .check(whole_number(0, std::numeric_limits<long>::max()))
+      .check(whole_number(0, std::numeric_limits<std::int64_t>::max()))
       .needs(bootstrap);
   add_choice(command, "--format", arguments->format,
              "text; latex (booktabs) or markdown: a table for a paper; csv: the same numbers with all digits (default: "

@@ -341,7 +341,7 @@ Action add_validate(Command app) {
       .check(whole_number(1, 1'000'000));
   command.add_option("--seed", arguments->seed, "random seed; the same seed gives the same table (default: 1)")
       .type_name("N")
-      .check(whole_number(0, std::numeric_limits<long>::max()));
+      .check(whole_number(0, std::numeric_limits<std::int64_t>::max()));
   add_threads_option(command, arguments->threads, "number of trials run in parallel");
   add_choice(command, "--link", arguments->link,
              "with 'faults': function, or udp for a robot in a separate process (default: function)")

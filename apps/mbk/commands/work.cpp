@@ -1,8 +1,5 @@
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <unistd.h>
 
-#include <csignal>
 #include <memory>
 
 #include "apps/mbk/commands/commands.h"
@@ -10,6 +7,7 @@
 #include "apps/mbk/options/output.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/vector4.h"
+#include "mbk/base/system/process.h"
 #include "mbk/batch/merge.h"
 
 namespace mbk::app {
@@ -47,13 +45,12 @@ int run(const WorkArguments& arguments) {
   if (arguments.cancel) return cancel(*folder);
   if (arguments.status || arguments.json) return show_state(*folder, arguments.json);
   if (arguments.with_parent) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() == 1) return kBadData;  // it is gone already
+    if (!system::end_with_parent()) return kBadData;  // it is gone already
   }
   if (auto ok = folder->check_program(); !ok) return report_error(ok.error());
   // Before any computation: processors of different kinds then give the same digits.
   const std::string& simd_of_job = folder->job().simd;
-  ::setenv("MBK_SIMD", simd_of_job.c_str(), 1);
+  system::set_environment("MBK_SIMD", simd_of_job);
   if (word_of(simd()) != simd_of_job) {
     return report_error({ErrorKind::data,
                          fmt::format("the job was started with SIMD level {}, but this processor uses {}", simd_of_job,

@@ -1,17 +1,16 @@
 #include "apps/mbk/options/chart_format.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <regex>
-#include <sstream>
 
 #include "apps/mbk/options/word_options.h"
-#include "mbk/base/core/temporary_folder.h"
-#include "mbk/batch/command_output.h"
+#include "mbk/base/system/command_output.h"
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/process.h"
+#include "mbk/base/system/temporary_folder.h"
 #include "mbk/files/recording/write_file.h"
 
 namespace mbk::app {
@@ -33,13 +32,9 @@ constexpr auto kPrograms = std::to_array<Program>({{"rsvg-convert", Converter::r
 
 /// The first that is in PATH; for pages the first browser.
 std::optional<Program> installed(bool for_pages = false) {
-  const char* const path = std::getenv("PATH");
   for (const Program& program : kPrograms) {
     if (for_pages && program.converter != Converter::browser) continue;
-    std::istringstream folders(path == nullptr ? "" : path);
-    for (std::string folder; std::getline(folders, folder, ':');) {
-      if (::access((std::filesystem::path(folder) / program.name).c_str(), X_OK) == 0) return program;
-    }
+    if (!system::find_program(program.name).empty()) return program;
   }
   return std::nullopt;
 }
@@ -78,7 +73,7 @@ std::vector<std::string> command_of(const Program& program, const std::string& i
                                       "--user-data-dir=" + folder,
                                       "--virtual-time-budget=10000",
                                       "--print-to-pdf=" + out};
-  if (::geteuid() == 0) command.emplace_back("--no-sandbox");  // it refuses to run as root otherwise
+  if (system::is_administrator()) command.emplace_back("--no-sandbox");  // it refuses to run as root otherwise
   command.push_back("file://" + in);
   return command;
 }
@@ -90,7 +85,7 @@ Result<std::string> pdf_by(const Program& program, const std::string& content, c
       temporary.path() / (program.converter == Converter::browser ? "page.html" : "chart.svg");
   const std::filesystem::path out = temporary.path() / "made.pdf";
   std::ofstream(in, std::ios::binary) << content;
-  const auto ran = MBK_TRY(batch::command_output(
+  const auto ran = MBK_TRY(system::command_output(
       command_of(program, in.string(), out.string(), (temporary.path() / "profile").string()), kLongestSeconds));
   std::ifstream file(out, std::ios::binary);
   std::string pdf((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());

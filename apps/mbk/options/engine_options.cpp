@@ -2,47 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <csignal>
+#include <cerrno>
+#include <system_error>
 #include <utility>
 
 #include "apps/mbk/caller.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/table_options.h"
 #include "apps/mbk/terminal/messages.h"
+#include "mbk/base/system/process.h"
 
 namespace mbk::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-volatile std::sig_atomic_t signal_that_came = 0;
-
-void note_signal(int signal) {
-  signal_that_came = signal;
-}
-
-/// During its lifetime a request to end is noted, and a second one ends the program.
-class NotedSignals {
- public:
-  NotedSignals() {
-    signal_that_came = 0;
-    for (const int signal : kSignals) {
-      struct sigaction action {};
-      action.sa_handler = note_signal;
-      action.sa_flags = static_cast<int>(SA_RESETHAND);
-      sigaction(signal, &action, nullptr);
-    }
-  }
-  NotedSignals(const NotedSignals&) = delete;
-  NotedSignals& operator=(const NotedSignals&) = delete;
-  ~NotedSignals() {
-    for (const int signal : kSignals) std::signal(signal, SIG_DFL);
-  }
-
- private:
-  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
-};
 
 }  // namespace
 
@@ -59,10 +32,11 @@ fs::path job_folder_here(const std::string& kind, const std::string& specificati
 }
 
 Result<fs::path> this_program() {
-  std::error_code error;
-  auto program = fs::read_symlink("/proc/self/exe", error);
-  if (error)
-    return bad_data(error.message(), "make this link readable; it names the running program", "/proc/self/exe");
+  auto program = system::program_file();
+  if (program.empty()) {
+    return bad_data(std::generic_category().message(errno), "make this link readable; it names the running program",
+                    "/proc/self/exe");
+  }
   return program;
 }
 
@@ -71,10 +45,13 @@ Result<Carried> carry_out(const EngineArguments& arguments, const batch::JobRequ
     return bad_usage("--engine starts processes of the program mbk", "call it on the command line");
   }
   const auto program = MBK_TRY(this_program());
-  const NotedSignals signals;
-  const auto stop = [] {
-    const int signal = signal_that_came;
-    return signal == 0 ? batch::Stop::no : signal == SIGHUP ? batch::Stop::leave : batch::Stop::cancel;
+  const system::NotedEndRequests requests;
+  const auto stop = [&] {
+    using system::EndRequest;
+    const EndRequest came = requests.came();
+    return came == EndRequest::none      ? batch::Stop::no
+           : came == EndRequest::hang_up ? batch::Stop::leave
+                                         : batch::Stop::cancel;
   };
   const auto progress = [&](const batch::JobState& state) {
     if (arguments.progress_json) {
@@ -99,7 +76,7 @@ Result<Carried> carry_out(const EngineArguments& arguments, const batch::JobRequ
       break;
     case batch::RunEnd::stopped:
       say("mbk: stopped; repeat the command to continue\n");
-      carried.code = 128 + signal_that_came;
+      carried.code = requests.exit_code();
       break;
     default:
       say("mbk: {} of {} chunks failed; see the logs in {}\n", report.state.given_up, report.state.chunks,

@@ -1,11 +1,9 @@
 #include "apps/mbk/options/output.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
@@ -15,6 +13,7 @@
 #include "apps/mbk/terminal/terminal.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
+#include "mbk/base/system/terminal.h"
 #include "mbk/files/recording/write_file.h"
 
 namespace mbk::app {
@@ -24,7 +23,7 @@ int report_error(const Error& error) {
     caller->fail(error);
   } else {
     std::fflush(stdout);
-    if (terminal_at(STDERR_FILENO).colour) {
+    if (terminal_at(system::kError).colour) {
       say("\x1b[1;31mmbk:\x1b[0m {}\n", error.line());
     } else {
       say("mbk: {}\n", error.line());
@@ -88,8 +87,7 @@ void say_written(const std::string& what, bool quiet) {
 
 int ended(int code) noexcept {
   if (code != kFine || !reader_has_ended) return code;
-  std::signal(SIGPIPE, SIG_DFL);
-  std::raise(SIGPIPE);
+  system::end_without_reader();
   return code;
 }
 
@@ -112,7 +110,7 @@ Result<void> print_text(const std::string& text) {
 
 Result<void> Output::show(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
   const bool printed = !file && Caller::current() == nullptr;
-  return printed ? write_to_stdout(for_people(text, terminal_at(STDOUT_FILENO))) : write(text, sources);
+  return printed ? write_to_stdout(for_people(text, terminal_at(system::kOutput))) : write(text, sources);
 }
 
 }  // namespace mbk::app

@@ -17,9 +17,9 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
-std::string command_line(int argc, char** argv) {
+std::string command_line(std::span<const std::string> words) {
   std::string line = "mbk";
-  for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
+  for (const std::string& word : words) line += " " + shell_word(word);
   return line;
 }
 

@@ -1,7 +1,5 @@
 #include "apps/mbk/terminal/help.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <sstream>
@@ -10,6 +8,7 @@
 
 #include "apps/mbk/terminal/command_tree.h"
 #include "apps/mbk/terminal/terminal.h"
+#include "mbk/base/system/terminal.h"
 #include "mbk/present/report/text.h"
 
 namespace mbk::app {
@@ -56,7 +55,7 @@ class HelpFormatter : public CLI::Formatter {
     return report::wrapped(text, columns_ - column_width_);
   }
 
-  std::size_t columns_ = terminal_at(STDOUT_FILENO).columns;
+  std::size_t columns_ = terminal_at(system::kOutput).columns;
 };
 
 }  // namespace

@@ -1,8 +1,11 @@
 #include "apps/mbk/terminal/last_words.h"
 
+#include <termios.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <string>
 
@@ -46,21 +49,30 @@ void on_exit_in_trial() {
 
 }  // namespace
 
-LastWords::LastWords(device::Device& robot, const std::filesystem::path& journal) {
+/// What signals did before.
+struct LastWords::Before {
+  std::array<struct sigaction, kFatalSignals.size()> actions{};
+};
+
+LastWords::LastWords(device::Device& robot, const std::filesystem::path& journal)
+    : before_(std::make_unique<Before>()) {
   journal_at_work() = journal.string();
   static const int kRegistered = std::atexit(on_exit_in_trial);
   static_cast<void>(kRegistered);
-  static_assert(kFatalSignals.size() == kFatal);
   robot_at_work = &robot;
   struct sigaction action {};
   action.sa_handler = on_fatal_signal;
   action.sa_flags = SA_ONSTACK;
-  for (std::size_t i = 0; i < kFatal; ++i) sigaction(kFatalSignals[i], &action, &before_[i]);
-  actions_before = before_.data();
+  for (std::size_t i = 0; i < kFatalSignals.size(); ++i) {
+    sigaction(kFatalSignals[i], &action, &before_->actions[i]);
+  }
+  actions_before = before_->actions.data();
 }
 
 LastWords::~LastWords() {
-  for (std::size_t i = 0; i < kFatal; ++i) sigaction(kFatalSignals[i], &before_[i], nullptr);
+  for (std::size_t i = 0; i < kFatalSignals.size(); ++i) {
+    sigaction(kFatalSignals[i], &before_->actions[i], nullptr);
+  }
   actions_before = nullptr;
   robot_at_work = nullptr;
 }

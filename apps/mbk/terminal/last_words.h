@@ -1,14 +1,12 @@
 #pragma once
 
-#include <termios.h>
-
-#include <array>
-#include <csignal>
-#include <cstddef>
 #include <filesystem>
+#include <memory>
 
 #include "mbk/base/realtime/signal_stack.h"
 #include "mbk/experiment/device/device.h"
+
+struct termios;
 
 namespace mbk::app {
 
@@ -34,10 +32,10 @@ class LastWords {
   static void restore_terminal(const termios* before);
 
  private:
-  static constexpr std::size_t kFatal = 7;
+  struct Before;
 
   realtime::SignalStack stack_;  // of the thread that waits for the loop
-  std::array<struct sigaction, kFatal> before_{};
+  std::unique_ptr<Before> before_;
 };
 
 }  // namespace mbk::app

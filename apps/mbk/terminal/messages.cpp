@@ -1,18 +1,18 @@
 #include "apps/mbk/terminal/messages.h"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <condition_variable>
 #include <cstring>
 #include <deque>
 #include <mutex>
+#include <span>
 #include <system_error>
 #include <thread>
 
 #include "apps/mbk/caller.h"
 #include "mbk/base/realtime/rest.h"
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/terminal.h"
 
 namespace mbk::app {
 namespace {
@@ -42,21 +42,14 @@ Messages& messages() {
 
 /// @returns  0, or the error
 int write_whole(std::string_view text) noexcept {
-  while (!text.empty()) {
-    const ssize_t wrote = write(STDERR_FILENO, text.data(), text.size());
-    if (wrote > 0) {
-      text.remove_prefix(static_cast<std::size_t>(wrote));
-    } else if (wrote == 0) {
-      return EIO;
-    } else if (errno == EAGAIN) {  // another process that shares it made it non-blocking
-      pollfd output{STDERR_FILENO, POLLOUT, 0};
-      constexpr int kPatience = 200;  // [ms]
-      if (poll(&output, 1, kPatience) == 0) return kNotRead;
-    } else if (errno != EINTR) {
-      return errno;
-    }
+  while (true) {
+    std::size_t wrote = 0;
+    const int error = system::write_all(system::kError, std::as_bytes(std::span(text)), &wrote);
+    if (error != EAGAIN) return error;
+    text.remove_prefix(wrote);  // another process that shares it made it non-blocking
+    constexpr std::chrono::milliseconds kPatience(200);
+    if (!system::wait_for_room(system::kError, kPatience)) return kNotRead;
   }
-  return 0;
 }
 
 /// Until the queue is closed and empty.

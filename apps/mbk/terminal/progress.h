@@ -1,7 +1,6 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <string>
@@ -10,6 +9,7 @@
 #include "apps/mbk/caller.h"
 #include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/terminal/terminal.h"
+#include "mbk/base/system/terminal.h"
 
 namespace mbk::app {
 
@@ -68,7 +68,7 @@ class Progress {
                               : fmt::format(", about {:.0f} min left", seconds / kMinute);
   }
 
-  bool quiet_, terminal_ = terminal_at(STDERR_FILENO).there;
+  bool quiet_, terminal_ = terminal_at(system::kError).there;
   std::string what_;
   double said_ = 0.0;
   Clock::time_point begun_ = Clock::now(), last_ = begun_;

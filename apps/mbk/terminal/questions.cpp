@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/trimmed.h"
+#include "mbk/base/system/terminal.h"
 
 namespace mbk::app {
 
@@ -22,7 +22,7 @@ Result<std::string> Questions::ask(const std::string& question, const std::strin
     if (!wrong.empty()) return bad_usage(fmt::format("{}: {}", question, wrong), "answer it; omit --yes");
     return by_default;
   }
-  const bool terminal = ::isatty(STDIN_FILENO) == 1;
+  const bool terminal = system::is_terminal(system::kInput);
   while (true) {
     say("{}{}: ", question, by_default.empty() ? "" : fmt::format(" [{}]", by_default));
     std::string line;

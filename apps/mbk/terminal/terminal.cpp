@@ -1,8 +1,5 @@
 #include "apps/mbk/terminal/terminal.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -11,6 +8,7 @@
 
 #include "apps/mbk/terminal/folded_table.h"
 #include "mbk/base/core/printable.h"
+#include "mbk/base/system/terminal.h"
 #include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
 
@@ -88,13 +86,12 @@ bool is_drawing(std::string_view line) {
 
 Terminal terminal_at(int descriptor) {
   Terminal found;
-  if (::isatty(descriptor) != 1) return found;
+  if (!system::is_terminal(descriptor)) return found;
   found.there = true;
-  const char *const no_colour = std::getenv("NO_COLOR"), *const kind = std::getenv("TERM");
-  found.colour = (no_colour == nullptr || *no_colour == '\0') && kind != nullptr && std::string_view(kind) != "dumb";
-  winsize size{};
-  if (::ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
-    found.columns = std::clamp<std::size_t>(size.ws_col, terminal::kNarrowest, report::kLineColumns);
+  const char* const no_colour = std::getenv("NO_COLOR");
+  found.colour = (no_colour == nullptr || *no_colour == '\0') && system::shows_colours(descriptor);
+  if (const std::size_t columns = system::terminal_columns(descriptor); columns > 0) {
+    found.columns = std::clamp(columns, terminal::kNarrowest, report::kLineColumns);
   }
   return found;
 }

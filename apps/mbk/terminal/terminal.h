@@ -13,7 +13,7 @@ struct Terminal {
   std::size_t columns = 100;  ///< of its lines, from 60 to 100
 };
 
-/// Standard output or standard error, as it is now.   @param descriptor  STDOUT_FILENO or STDERR_FILENO
+/// Standard output or standard error, as it is now.   @param descriptor  system::kOutput or system::kError
 [[nodiscard]] Terminal terminal_at(int descriptor);
 
 /// Whether a line contains Braille dots or lines of axes (U+2500 to U+28FF without arrows and letters).

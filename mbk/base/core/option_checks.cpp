@@ -53,18 +53,18 @@ OptionCheck number_within(double largest) {
   }};
 }
 
-OptionCheck whole_number(long least, long most) {
+OptionCheck whole_number(std::int64_t least, std::int64_t most) {
   return {[=](const std::string& given) -> std::string {
-    const auto value = number<long>(given);
+    const auto value = number<std::int64_t>(given);
     return value && *value >= least && *value <= most
                ? ""
                : fmt::format("{} is not a whole number from {} to {}", quoted(given), least, most);
   }};
 }
 
-OptionCheck odd_number(long least, long most) {
+OptionCheck odd_number(std::int64_t least, std::int64_t most) {
   return {[=](const std::string& given) -> std::string {
-    const auto value = number<long>(given);
+    const auto value = number<std::int64_t>(given);
     return value && *value >= least && *value <= most && *value % 2 == 1
                ? ""
                : fmt::format("{} is not an odd number from {} to {}", quoted(given), least, most);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,8 +17,8 @@ struct OptionCheck {
 [[nodiscard]] OptionCheck positive();
 [[nodiscard]] OptionCheck not_negative();
 [[nodiscard]] OptionCheck number_within(double largest);  ///< from −largest to largest
-[[nodiscard]] OptionCheck whole_number(long least, long most);
-[[nodiscard]] OptionCheck odd_number(long least, long most);
+[[nodiscard]] OptionCheck whole_number(std::int64_t least, std::int64_t most);
+[[nodiscard]] OptionCheck odd_number(std::int64_t least, std::int64_t most);
 [[nodiscard]] OptionCheck not_empty();
 
 /// One of a few words, which a shell also offers.

@@ -5,12 +5,15 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "mbk/base/numeric/dense.h"
 
 namespace mbk::numeric {
 namespace {
+
+constexpr double kHalfRoot = std::numbers::sqrt2 / 2.0;  // √½
 
 // Symmetric matrices are columns of n(n+1)/2 numbers, those off the diagonal times √2, so that the inner product of two
 // columns is that of the matrices.
@@ -27,7 +30,7 @@ Matrix packing(Index n) {
       if (i == j) {
         map(row, i * n + i) = 1.0;
       } else {
-        map(row, i * n + j) = map(row, j * n + i) = M_SQRT1_2;
+        map(row, i * n + j) = map(row, j * n + i) = kHalfRoot;
       }
     }
   }
@@ -38,7 +41,7 @@ Matrix unpacked(const Eigen::Ref<const Vector>& packed, Index n) {
   Matrix X(n, n);
   Index row = 0;
   for (Index j = 0; j < n; ++j) {
-    for (Index i = 0; i <= j; ++i, ++row) X(i, j) = X(j, i) = i == j ? packed[row] : M_SQRT1_2 * packed[row];
+    for (Index i = 0; i <= j; ++i, ++row) X(i, j) = X(j, i) = i == j ? packed[row] : kHalfRoot * packed[row];
   }
   return X;
 }
@@ -47,7 +50,7 @@ Vector packed(const Matrix& X) {
   Vector column(packed_size(X.rows()));
   Index row = 0;
   for (Index j = 0; j < X.cols(); ++j) {
-    for (Index i = 0; i <= j; ++i, ++row) column[row] = i == j ? X(i, j) : M_SQRT2 * X(i, j);
+    for (Index i = 0; i <= j; ++i, ++row) column[row] = i == j ? X(i, j) : std::numbers::sqrt2 * X(i, j);
   }
   return column;
 }

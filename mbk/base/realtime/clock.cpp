@@ -1,8 +1,8 @@
 #include "mbk/base/realtime/clock.h"
 
-#include <cerrno>
 #include <cmath>
-#include <ctime>
+
+#include "mbk/base/system/time.h"
 
 namespace mbk::realtime {
 namespace {
@@ -18,8 +18,7 @@ std::int64_t nanoseconds(double seconds) noexcept {
 std::int64_t monotonic_ns() noexcept {
   // A clock that cannot be read stands still for that moment: at zero every deadline would be over, or never come.
   thread_local std::int64_t last = 0;
-  timespec time{};
-  if (clock_gettime(CLOCK_MONOTONIC, &time) == 0) last = time.tv_sec * kSecond + time.tv_nsec;
+  static_cast<void>(system::read_clock(last));
   return last;
 }
 
@@ -38,13 +37,12 @@ double WallClock::wait() noexcept {
     missed_ += static_cast<std::uint64_t>(over);
     next_ += over * period_;
   }
-  const timespec until{next_ / kSecond, next_ % kSecond};
   std::int64_t woken = 0;
   while (true) {  // a sleep that returns at once must not make time run faster
-    const int interrupted = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    const bool slept = system::sleep_until(next_);
     woken = monotonic_ns();
     if (woken >= next_) break;
-    if (interrupted != EINTR) ++early_;
+    if (slept) ++early_;
   }
   const std::int64_t late = woken - due;  // also of the ticks that went by
   next_ += period_;

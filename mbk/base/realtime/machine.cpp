@@ -1,8 +1,5 @@
 #include "mbk/base/realtime/machine.h"
 
-#include <sched.h>
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -13,6 +10,7 @@
 #include <thread>
 
 #include "mbk/base/realtime/clock.h"
+#include "mbk/base/system/process.h"
 
 namespace mbk::realtime {
 namespace {
@@ -113,10 +111,7 @@ Machine read_machine(const fs::path& root) {
   }
   machine.processor_quota = quota_of(root);
   machine.clock_source = text_of(root / "sys/devices/system/clocksource/clocksource0/current_clocksource").value_or("");
-  cpu_set_t allowed;
-  if (sched_getaffinity(0, sizeof(allowed), &allowed) == 0) {
-    machine.processors = static_cast<unsigned>(CPU_COUNT(&allowed));
-  }
+  machine.processors = system::usable_processors();
   machine.load = number_in(proc / "loadavg");
   return machine;
 }
@@ -139,7 +134,7 @@ Lateness measure_lateness(double period, double duration, int priority) {
     found.duration = clock.now();
     found.missed = clock.missed();
   }).join();
-  if (found.setup.locked_memory) munlockall();  // who called may need more of it than may be locked
+  if (found.setup.locked_memory) unlock_memory();  // who called may need more of it than may be locked
   return found;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <csignal>
 #include <cstddef>
 #include <memory>
 
@@ -17,8 +16,8 @@ class SignalStack {
 
  private:
   std::unique_ptr<std::byte[]> bytes_;
-  stack_t before_{};
-  bool ours_ = false;
+  struct Before;
+  std::unique_ptr<Before> before_;  ///< where the stack is this one
 };
 
 }  // namespace mbk::realtime

@@ -15,6 +15,8 @@ struct ThreadSetup {
 /// during which a real-time thread would occupy a processor. @returns whether it is locked; prepare_thread reports why
 /// not
 bool lock_memory() noexcept;
+/// What of it was locked may leave it again.
+void unlock_memory() noexcept;
 
 /// Asks for locked memory for the process, then for SCHED_FIFO at `priority` (1–99) for the calling thread, and touches
 /// the stack so that it is in memory. Refusals are reported, never an error: a simulation needs neither.

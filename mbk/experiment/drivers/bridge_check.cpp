@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <random>
 #include <utility>
 
 #include "mbk/base/core/option_limits.h"
 #include "mbk/base/realtime/clock.h"
+#include "mbk/base/system/time.h"
 #include "mbk/experiment/drivers/datagram.h"
 
 namespace mbk::drivers {
@@ -667,9 +667,7 @@ std::int64_t UdpBridgeWire::now() noexcept {
 }
 
 void UdpBridgeWire::wait_until(std::int64_t time) noexcept {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  const timespec until{time / kSecond, time % kSecond};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) {
+  while (!system::sleep_until(time)) {
   }
 }
 

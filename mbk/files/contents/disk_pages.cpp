@@ -1,16 +1,14 @@
 #include "mbk/files/contents/disk_pages.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <span>
 #include <utility>
+
+#include "mbk/base/system/mapping.h"
 
 namespace mbk::recording {
 namespace {
@@ -20,18 +18,13 @@ constexpr std::array kSignals = {&PreparedTrial::position,          &PreparedTri
                                  &PreparedTrial::force_sensitivity, &PreparedTrial::reference,
                                  &PreparedTrial::reference_motion};
 
-std::uintptr_t page_size() {
-  static const auto kSize = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
-  return kSize;
-}
-
 /// The whole pages among numbers.
 struct Pages {
   std::uintptr_t begin, end;
 
   Pages(const double* first, Index count)
-      : begin((address_of(first) + page_size() - 1) / page_size() * page_size()),
-        end(address_of(first + count) / page_size() * page_size()) {}
+      : begin((address_of(first) + system::page_size() - 1) / system::page_size() * system::page_size()),
+        end(address_of(first + count) / system::page_size() * system::page_size()) {}
   [[nodiscard]] bool empty() const { return begin >= end; }
   [[nodiscard]] std::size_t size() const { return end - begin; }
 
@@ -42,37 +35,25 @@ void* at(std::uintptr_t address) {
   return reinterpret_cast<void*>(address);  // NOLINT(performance-no-int-to-ptr): pages are counted in numbers
 }
 
-bool write_all(int descriptor, const char* from, std::size_t count, std::size_t offset) {
-  for (std::size_t done = 0; done < count;) {
-    const ssize_t wrote = ::pwrite(descriptor, from + done, count - done, static_cast<off_t>(offset + done));
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote <= 0) return false;
-    done += static_cast<std::size_t>(wrote);
-  }
-  return true;
+bool write_all(const system::OpenFile& file, const char* from, std::size_t count, std::size_t offset) {
+  return system::write_all_at(file.number(), std::as_bytes(std::span(from, count)), offset) == 0;
 }
 
 }  // namespace
 
-DiskPages::~DiskPages() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
 bool DiskPages::open() {
-  if (descriptor_ >= 0 || failed_) return !failed_;
+  if (file_ || failed_) return !failed_;
   const char* const chosen = std::getenv("TMPDIR");
-  const char* const folder = chosen != nullptr && *chosen != '\0' ? chosen : "/var/tmp";
-  descriptor_ = ::open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  failed_ = descriptor_ < 0;
+  file_ = system::open_unnamed(chosen != nullptr && *chosen != '\0' ? chosen : "/var/tmp");
+  failed_ = !file_;
   return !failed_;
 }
 
 Index DiskPages::take(double* first, Index count) {
   const Pages pages(first, count);
   if (pages.empty() || !open()) return 0;
-  failed_ = !write_all(descriptor_, static_cast<const char*>(at(pages.begin)), pages.size(), size_) ||
-            ::mmap(at(pages.begin), pages.size(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, descriptor_,
-                   static_cast<off_t>(size_)) == MAP_FAILED;
+  failed_ = !write_all(file_, static_cast<const char*>(at(pages.begin)), pages.size(), size_) ||
+            !system::map_file_over(at(pages.begin), pages.size(), file_, size_);
   if (failed_) return 0;
   size_ += pages.size();
   return static_cast<Index>((pages.end - Pages::address_of(first)) / sizeof(double));
@@ -91,7 +72,7 @@ void DiskPages::add(Coming& coming, const double* from, Index count) {
   const std::uintptr_t end = begin + static_cast<std::size_t>(count) * sizeof(double);
   const std::uintptr_t first = std::clamp(pages.begin, begin, end), last = std::clamp(pages.end, begin, end);
   if (coming.on_disk && first < last &&
-      !write_all(descriptor_, reinterpret_cast<const char*>(from) + (first - begin), last - first,
+      !write_all(file_, reinterpret_cast<const char*>(from) + (first - begin), last - first,
                  coming.offset + (first - pages.begin))) {
     failed_ = true;
     arrived(coming);
@@ -112,19 +93,14 @@ void DiskPages::arrived(Coming& coming) {
   const Pages pages(coming.first, coming.count);
   const std::uintptr_t end = std::clamp(Pages::address_of(coming.first + coming.come), pages.begin, pages.end);
   const std::size_t written = end - pages.begin;
-  std::size_t whole = written / page_size() * page_size();
-  if (whole > 0 && ::mmap(at(pages.begin), whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, descriptor_,
-                          static_cast<off_t>(coming.offset)) == MAP_FAILED) {
-    whole = 0;
-  }
+  std::size_t whole = written / system::page_size() * system::page_size();
+  if (whole > 0 && !system::map_file_over(at(pages.begin), whole, file_, coming.offset)) whole = 0;
   if (!read_back(at(pages.begin + whole), written - whole, coming.offset + whole)) throw std::bad_alloc();
 }
 
 bool DiskPages::read_back(void* to, std::size_t count, std::size_t offset) const {
   for (std::size_t done = 0; done < count;) {
-    const ssize_t got =
-        ::pread(descriptor_, static_cast<char*>(to) + done, count - done, static_cast<off_t>(offset + done));
-    if (got < 0 && errno == EINTR) continue;
+    const auto got = system::read_some_at(file_.number(), static_cast<char*>(to) + done, count - done, offset + done);
     if (got <= 0) return false;
     done += static_cast<std::size_t>(got);
   }

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/system/files.h"
 #include "mbk/model/trial/prepared_trial.h"
 
 namespace mbk::recording {
@@ -21,7 +22,7 @@ class DiskPages {
   DiskPages& operator=(const DiskPages&) = delete;
   DiskPages(DiskPages&&) = delete;
   DiskPages& operator=(DiskPages&&) = delete;
-  ~DiskPages();
+  ~DiskPages() = default;
 
   /// Takes the whole pages among `count` numbers.
   /// @returns  number of numbers taken; continue from there
@@ -48,7 +49,7 @@ class DiskPages {
   [[nodiscard]] bool open();
   [[nodiscard]] bool read_back(void* to, std::size_t count, std::size_t offset) const;
 
-  int descriptor_ = -1;
+  system::OpenFile file_;
   bool failed_ = false;
   std::size_t size_ = 0;
 };

@@ -1,10 +1,6 @@
 #include "mbk/files/contents/file_bytes.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -12,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/mapping.h"
 #include "mbk/files/contents/memory.h"
 
 namespace mbk::recording {
@@ -21,48 +19,36 @@ std::string reason(int code) {
   return std::generic_category().message(code);
 }
 
-struct Descriptor {
-  int number;
-  explicit Descriptor(int descriptor) : number(descriptor) {}
-  Descriptor(Descriptor&& other) noexcept : number(std::exchange(other.number, -1)) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor() {
-    if (number >= 0) ::close(number);
-  }
-};
-
 struct Opened {
-  Descriptor descriptor;
+  system::OpenFile file;
   std::size_t size;
 };
 
 Result<Opened> open_file(const std::filesystem::path& file) {
-  // O_NONBLOCK: opening a pipe must not wait for its writer.
-  Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (descriptor.number < 0) {
+  system::OpenFile opened = system::open_to_read(file);  // of a pipe it must not wait for the writer
+  if (!opened) {
     if (errno == ENOENT) return bad_data("there is no such file", "check the name and the folder");
     return bad_data(fmt::format("cannot be opened: {}", reason(errno)), "check its permissions");
   }
-  struct stat status {};
-  if (::fstat(descriptor.number, &status) != 0) return bad_data(fmt::format("cannot be read: {}", reason(errno)));
-  if (S_ISDIR(status.st_mode)) return bad_data("this is a folder, not a file", "name the recording in it");
-  if (!S_ISREG(status.st_mode)) return bad_data("this is not a regular file", "copy the recording to a file first");
-  if (status.st_size == 0) return bad_data("the file is empty", "copy it again");
-  if (static_cast<std::uint64_t>(status.st_size) > kLargestFile) {
-    return bad_data(fmt::format("the file has {} bytes; the limit is {}", status.st_size, kLargestFile),
+  const auto status = system::status_of(opened);
+  using Kind = system::FileStatus::Kind;
+  if (!status) return bad_data(fmt::format("cannot be read: {}", reason(errno)));
+  if (status->kind == Kind::folder) return bad_data("this is a folder, not a file", "name the recording in it");
+  if (status->kind != Kind::regular) {
+    return bad_data("this is not a regular file", "copy the recording to a file first");
+  }
+  if (status->size == 0) return bad_data("the file is empty", "copy it again");
+  if (status->size > kLargestFile) {
+    return bad_data(fmt::format("the file has {} bytes; the limit is {}", status->size, kLargestFile),
                     "split the recording into numbered parts");
   }
-  return Opened{std::move(descriptor), static_cast<std::size_t>(status.st_size)};
+  return Opened{std::move(opened), static_cast<std::size_t>(status->size)};
 }
 
 /// Reads until all of it is there.
 Result<void> read_bytes(int descriptor, std::size_t from, void* to, std::size_t count) {
   for (std::size_t done = 0; done < count;) {
-    const ssize_t got =
-        ::pread(descriptor, static_cast<std::byte*>(to) + done, count - done, static_cast<off_t>(from + done));
-    if (got < 0 && errno == EINTR) continue;
+    const auto got = system::read_some_at(descriptor, static_cast<std::byte*>(to) + done, count - done, from + done);
     if (got < 0) return bad_data(fmt::format("cannot be read: {}", reason(errno)));
     if (got == 0) return bad_data("the file became shorter while it was being read", "wait until writing has finished");
     done += static_cast<std::size_t>(got);
@@ -76,9 +62,8 @@ using Bytes = std::unique_ptr<std::byte[], Buffer::Free>;
 Bytes mapped_bytes(std::size_t n) {
   constexpr std::size_t kPage = std::size_t{2} << 20;
   const std::size_t whole = (n + kPage - 1) / kPage * kPage;  // which a system aligns
-  void* const room = ::mmap(nullptr, whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (room == MAP_FAILED) throw std::bad_alloc();
-  ::madvise(room, n / kPage * kPage, MADV_HUGEPAGE);  // only advice: it may fail
+  void* const room = system::map_memory(whole);
+  if (room == nullptr) throw std::bad_alloc();
   return Bytes(static_cast<std::byte*>(room), Buffer::Free{whole});
 }
 
@@ -90,7 +75,7 @@ Bytes bytes_of_heap(std::size_t n) {
 
 void FreeBytes::operator()(std::byte* bytes) const {
   if (mapped > 0) {
-    ::munmap(bytes, mapped);
+    system::unmap_memory(bytes, mapped);
   } else {
     ::operator delete(bytes);
   }
@@ -112,7 +97,7 @@ Result<Buffer> read_whole(int descriptor, std::size_t size) {
 
 Result<Buffer> read_file(const std::filesystem::path& file) {
   const auto open = MBK_TRY(open_file(file));
-  return read_whole(open.descriptor.number, open.size);
+  return read_whole(open.file.number(), open.size);
 }
 
 Result<OpenFile> OpenFile::open(const std::filesystem::path& file) {
@@ -120,13 +105,13 @@ Result<OpenFile> OpenFile::open(const std::filesystem::path& file) {
   made.path_ = file;
   MBK_TRY(made.wake());
   made.begin_.resize(std::min(kBegin, made.size_));
-  MBK_TRY(read_bytes(made.descriptor_, 0, made.begin_.data(), made.begin_.size()));
+  MBK_TRY(read_bytes(made.file_.number(), 0, made.begin_.data(), made.begin_.size()));
   return made;
 }
 
 OpenFile::OpenFile(OpenFile&& other) noexcept
     : path_(std::move(other.path_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
+      file_(std::move(other.file_)),
       size_(other.size_),
       begin_(std::move(other.begin_)),
       bytes_(std::move(other.bytes_)),
@@ -138,14 +123,13 @@ OpenFile::~OpenFile() {
 }
 
 void OpenFile::rest() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  descriptor_ = -1;
+  file_.close();
 }
 
 Result<void> OpenFile::wake() {
-  if (descriptor_ >= 0) return {};
+  if (file_) return {};
   auto opened = MBK_TRY(open_file(path_));
-  descriptor_ = std::exchange(opened.descriptor.number, -1);
+  file_ = std::move(opened.file);
   size_ = opened.size;
   return {};
 }
@@ -153,7 +137,7 @@ Result<void> OpenFile::wake() {
 Result<std::shared_ptr<Buffer>> OpenFile::bytes() {
   if (bytes_ != nullptr) return bytes_;
   MBK_TRY(wake());
-  auto all = MBK_TRY(read_whole(descriptor_, size_));
+  auto all = MBK_TRY(read_whole(file_.number(), size_));
   sum_ = recording::sha256(all.bytes());
   bytes_ = std::make_shared<Buffer>(std::move(all));
   return bytes_;
@@ -167,11 +151,10 @@ Result<std::shared_ptr<Buffer>> OpenFile::take() {
 
 Result<FileInPassing> OpenFile::in_passing() {
   MBK_TRY(wake());
-  void* const room = ::mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room == MAP_FAILED) throw std::bad_alloc();
-  ::madvise(room, size_, MADV_HUGEPAGE);  // only advice: it may fail
+  void* const room = system::reserve_memory(size_);
+  if (room == nullptr) throw std::bad_alloc();
   passing_sum_ = std::make_shared<Sha256>();
-  return FileInPassing(descriptor_, size_, static_cast<char*>(room), passing_sum_);
+  return FileInPassing(file_.number(), size_, static_cast<char*>(room), passing_sum_);
 }
 
 const std::string& OpenFile::sha256() {
@@ -191,7 +174,7 @@ FileInPassing::FileInPassing(FileInPassing&& other) noexcept
 
 FileInPassing::~FileInPassing() {
   if (ahead_.valid()) ahead_.wait();
-  if (data_ != nullptr) ::munmap(data_, size_);
+  if (data_ != nullptr) system::unmap_memory(data_, size_);
 }
 
 void FileInPassing::read_ahead() {
@@ -221,14 +204,13 @@ void FileInPassing::forget(std::size_t before) {
   // The memory of the last one serves the next that is read: it need not be cleared again.
   char* const from = spare_ != nullptr ? spare_ : data_ + forgotten_;
   spare_ = data_ + end - kPiece;
-  ::madvise(from, static_cast<std::size_t>(spare_ - from), MADV_DONTNEED);
+  system::forget_memory(from, static_cast<std::size_t>(spare_ - from));
   forgotten_ = end;
 }
 
 void FileInPassing::use_spare() {
   if (spare_ == nullptr || size_ - read_ < kPiece) return;
-  constexpr int kHow = MREMAP_MAYMOVE | MREMAP_FIXED | MREMAP_DONTUNMAP;
-  if (::mremap(spare_, kPiece, kPiece, kHow, data_ + read_) != MAP_FAILED) spare_ = nullptr;
+  if (system::move_memory(spare_, data_ + read_, kPiece)) spare_ = nullptr;
 }
 
 }  // namespace mbk::recording

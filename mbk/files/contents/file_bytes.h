@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/system/files.h"
 #include "mbk/files/contents/sha256.h"
 
 namespace mbk::recording {
@@ -123,7 +124,7 @@ class OpenFile {
   [[nodiscard]] Result<void> wake();
 
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  system::OpenFile file_;
   std::size_t size_ = 0;
   std::string begin_;
   std::shared_ptr<Buffer> bytes_;

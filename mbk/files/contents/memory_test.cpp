@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include "mbk/base/system/mapping.h"
+
 namespace mbk::recording {
 namespace {
 
 TEST(Memory, OfTheMachineIsMoreThanNothingAndLessThanAll) {
-  EXPECT_GT(available_memory(), std::uint64_t{1} << 20);
+  EXPECT_GT(system::available_memory(), std::uint64_t{1} << 20);
   EXPECT_TRUE(check_memory(1000));
   EXPECT_FALSE(check_memory(std::uint64_t{1} << 60));
 }
@@ -28,7 +30,7 @@ TEST(Memory, KeepsToTheLimitOfTheAddressSpace) {
   ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
   const rlimit small{std::uint64_t{1} << 30, before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
-  EXPECT_LE(available_memory(), std::uint64_t{1} << 30);
+  EXPECT_LE(system::available_memory(), std::uint64_t{1} << 30);
   EXPECT_FALSE(check_memory(std::uint64_t{2} << 30));
   ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
 }

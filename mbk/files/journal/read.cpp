@@ -1,7 +1,4 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -12,11 +9,13 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/base/system/files.h"
 #include "mbk/files/journal/blocks.h"
 #include "mbk/files/journal/journal.h"
 
@@ -290,6 +289,10 @@ std::string plural(std::uint64_t count, std::string_view one, std::string_view m
 
 }  // namespace
 
+std::string_view Ending::word() const {
+  return how == How::other ? std::string_view(other) : word_of(how);
+}
+
 std::uint64_t Damage::ticks_lost() const {
   std::uint64_t sum = 0;
   for (const TickRange& range : lost) sum += range.count;
@@ -402,18 +405,16 @@ Result<Journal> read(const std::filesystem::path& file) {
     return bad_data(fmt::format("cannot be read: {}", std::strerror(code)), "check the name and its permissions",
                     file.string());
   };
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) return cannot(errno);
-  const std::unique_ptr<const int, void (*)(const int*)> closing(&descriptor, [](const int* d) { close(*d); });
-  struct stat status {};
-  if (fstat(descriptor, &status) != 0) return cannot(errno);
-  if (!S_ISREG(status.st_mode)) return cannot(S_ISDIR(status.st_mode) ? EISDIR : EINVAL);
-  const auto size = static_cast<std::size_t>(status.st_size);
+  const system::OpenFile opened = system::open_to_read(file);
+  const auto status = opened ? system::status_of(opened) : std::nullopt;
+  using Kind = system::FileStatus::Kind;
+  if (!status) return cannot(errno);
+  if (status->kind != Kind::regular) return cannot(status->kind == Kind::folder ? EISDIR : EINVAL);
+  const auto size = static_cast<std::size_t>(status->size);
   const auto bytes = std::make_unique_for_overwrite<std::byte[]>(size);
   std::size_t done = 0;
   while (done < size) {  // as far as it goes: it may be shorter by now
-    const ssize_t got = ::read(descriptor, bytes.get() + done, size - done);
-    if (got < 0 && errno == EINTR) continue;
+    const auto got = system::read_some(opened.number(), bytes.get() + done, size - done);
     if (got < 0) return cannot(errno);
     if (got == 0) break;
     done += static_cast<std::size_t>(got);

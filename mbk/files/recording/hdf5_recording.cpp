@@ -10,10 +10,10 @@
 #include <set>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/base/system/mapping.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/contents/lines.h"
-#include "mbk/files/contents/memory.h"
 #include "mbk/files/hdf5/read_hdf5.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"
@@ -279,7 +279,7 @@ Contents contents_of_hdf5(hdf5::Group root) {
 }
 
 Result<Contents> decode_hdf5(std::span<const std::byte> file) {
-  auto root = hdf5::read(file, {.bytes = largest_claim(file.size()), .available = available_memory()});
+  auto root = hdf5::read(file, {.bytes = largest_claim(file.size()), .available = system::available_memory()});
   if (!root) {
     Error error = root.error();
     error.where = printable(std::move(error.where));  // names of a damaged file can be anything

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <glob.h>
 
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mbk/base/core/natural_order.h"
+#include "mbk/base/system/files.h"
 #include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/in_memory.h"
 #include "mbk/files/recording/read.h"
@@ -54,14 +55,11 @@ Result<std::vector<fs::path>> files_in(const fs::path& folder) {
 }
 
 Result<std::vector<fs::path>> files_like(const std::string& pattern) {
-  glob_t found{};
-  const int code = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
   std::vector<fs::path> files;
-  for (std::size_t k = 0; code == 0 && k < found.gl_pathc; ++k) {
+  for (fs::path& path : system::matching(pattern)) {
     std::error_code ignored;
-    if (!fs::is_directory(found.gl_pathv[k], ignored)) files.emplace_back(found.gl_pathv[k]);
+    if (!fs::is_directory(path, ignored)) files.push_back(std::move(path));
   }
-  ::globfree(&found);
   if (files.empty()) return bad_data("no file matches this pattern", "check it with 'ls'", pattern);
   return sorted(std::move(files));
 }

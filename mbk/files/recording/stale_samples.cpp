@@ -328,7 +328,7 @@ Stale held(double period, const Runs& all, Index samples) {
   Stale stale{{Staleness::held, period}, std::vector<bool>(static_cast<std::size_t>(samples), true)};
   const auto begin_at = [&](Index begin, Index length) {
     for (double at = 0.0; at <= static_cast<double>(length) - 0.5 * period || at == 0.0; at += period) {
-      stale.samples[static_cast<std::size_t>(begin + std::min(length - 1, std::lround(at)))] = false;
+      stale.samples[static_cast<std::size_t>(begin + std::min<Index>(length - 1, std::lround(at)))] = false;
     }
   };
   begin_at(0, all.changes.front());

@@ -1,75 +1,51 @@
 #include "mbk/files/recording/write_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
+#include <cstdint>
+#include <span>
 #include <system_error>
+
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/process.h"
 
 namespace mbk::recording {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The functions below give 0, or the error code.
-
-int write_whole(int descriptor, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t wrote = ::write(descriptor, text.data(), text.size());
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote <= 0) return wrote < 0 ? errno : ENOSPC;
-    text.remove_prefix(static_cast<std::size_t>(wrote));
-  }
-  return 0;
-}
-
 /// With which permissions a file is made.
 struct Mode {
-  mode_t bits = 0666;
+  unsigned bits = 0666;
   bool whatever_the_umask = false;
-  std::optional<gid_t> group;  ///< the group that may read the file; a file of another group is for its owner alone
+  std::optional<std::uint64_t> group;  ///< that may read the file; a file of another group is for its owner alone
 };
 
 /// A file that is made here, so that nothing that is there is followed or replaced, and on the disk when this ends.
 int write_new(const fs::path& file, std::string_view text, const Mode& mode) {
-  const int descriptor =
-      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode.whatever_the_umask ? 0600 : mode.bits);
-  if (descriptor < 0) return errno;
-  int code = mode.whatever_the_umask && ::fchmod(descriptor, mode.bits) != 0 ? errno : 0;
-  if (struct stat made{}; code == 0 && mode.group) {
-    if (::fstat(descriptor, &made) != 0 || (made.st_gid != *mode.group && ::fchmod(descriptor, 0600) != 0))
-      code = errno;
+  system::OpenFile out = system::create_new(file, mode.whatever_the_umask ? 0600 : mode.bits);
+  if (!out) return errno;
+  int code = mode.whatever_the_umask ? system::set_permissions(out, mode.bits) : 0;
+  if (code == 0 && mode.group) {
+    const auto made = system::status_of(out);
+    code = !made ? errno : made->group != *mode.group ? system::set_permissions(out, 0600) : 0;
   }
-  if (code == 0) code = write_whole(descriptor, text);
-  if (code == 0 && ::fsync(descriptor) != 0) code = errno;
-  if (::close(descriptor) != 0 && code == 0) code = errno;
+  if (code == 0) code = system::write_all(out.number(), std::as_bytes(std::span(text)));
+  if (code == 0) code = system::flush(out);
+  if (const int closed = out.close(); code == 0) code = closed;
   return code;
-}
-
-/// A folder's names are on the disk.
-int flush_names(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno;
-  const int code = ::fsync(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  return code == EINVAL ? 0 : code;  // file systems that cannot say so
 }
 
 /// Gives a file its name; where that is taken it is an error unless it may be replaced, however late it was taken.
 int give_name(const fs::path& from, const fs::path& to, bool overwrite) {
-  if (overwrite) return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL && errno != ENOSYS) return errno;
-  return ::link(from.c_str(), to.c_str()) == 0 ? 0 : errno;  // file systems that cannot do that; `from` goes away
+  return overwrite ? system::rename_over(from, to) : system::rename_new(from, to);
 }
 
 /// A file that goes away unless it was renamed.
 struct Temporary {
   fs::path path;
-  ~Temporary() { ::unlink(path.c_str()); }
+  ~Temporary() { system::remove_name(path); }
 };
 
 Result<void> cannot_write(const fs::path& file, int code) {
@@ -104,8 +80,8 @@ fs::path folder_of(const fs::path& file) {
 
 /// The temporary name of a file during writing; it does not exist yet.
 fs::path temporary_name(const fs::path& file) {
-  fs::path name = folder_of(file) / fmt::format(".{}.{}.part", file.filename().string(), ::getpid());
-  ::unlink(name.c_str());  // of a process of that number that went down
+  fs::path name = folder_of(file) / fmt::format(".{}.{}.part", file.filename().string(), system::process_id());
+  system::remove_name(name);  // of a process of that number that went down
   return name;
 }
 
@@ -120,24 +96,25 @@ Result<void> write_as(const fs::path& file, bool overwrite, std::string_view tex
   const Temporary temporary{temporary_name(file)};
   if (const int error = write_new(temporary.path, text, mode); error != 0) return not_begun(file, temporary, error);
   if (const int error = give_name(temporary.path, file, overwrite); error != 0) return cannot_write(file, error);
-  if (const int error = flush_names(folder_of(file)); error != 0) return cannot_write(file, error);
+  if (const int error = system::flush_folder(folder_of(file)); error != 0) return cannot_write(file, error);
   return {};
 }
 
 /// Who may read all of the files that were looked at.
 struct CommonReaders {
   Readers readers = Readers::all;
-  std::optional<gid_t> group;  ///< where it is that group's members
+  std::optional<std::uint64_t> group;  ///< where it is that group's members
 
   void restrict_to(const fs::path& path) {
-    struct stat found {};
     if (readers == Readers::owner) return;
-    if (::stat(path.c_str(), &found) != 0) {
+    constexpr unsigned kOthersRead = 04, kGroupReads = 040;
+    const auto found = system::status_of(path);
+    if (!found) {
       readers = Readers::owner;
-    } else if ((found.st_mode & S_IROTH) == 0) {
-      const bool same = !group || *group == found.st_gid;
-      readers = same && (found.st_mode & S_IRGRP) != 0 ? Readers::group : Readers::owner;
-      group = found.st_gid;
+    } else if ((found->permissions & kOthersRead) == 0) {
+      const bool same = !group || *group == found->group;
+      readers = same && (found->permissions & kGroupReads) != 0 ? Readers::group : Readers::owner;
+      group = found->group;
     }
   }
 };

@@ -1,9 +1,7 @@
 #include "mbk/study/store/store.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
@@ -12,6 +10,8 @@
 #include <system_error>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/process.h"
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/study/store/store_database.h"
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 std::string temporary_name() {
   static std::atomic<unsigned> count = 0;
-  return fmt::format(".{}.{}.{}.part", ::getpid(), count++, new_salt().substr(0, 8));
+  return fmt::format(".{}.{}.{}.part", system::process_id(), count++, new_salt().substr(0, 8));
 }
 
 Result<void> check_why(const std::string& why) {
@@ -79,7 +79,7 @@ IncomingFile::IncomingFile(IncomingFile&& other) noexcept
       bytes_(other.bytes_) {}
 
 IncomingFile::~IncomingFile() {
-  if (!path_.empty()) ::unlink(path_.c_str());
+  if (!path_.empty()) system::remove_name(path_);
 }
 
 Store::Store(std::unique_ptr<Database> database) : database_(std::move(database)) {}
@@ -114,12 +114,10 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
     // Whole before it has its name: who finds it finds a study.
     const std::string temporary = temporary_name();
     const fs::path path = folder / temporary;
-    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (descriptor < 0) {
+    if (!system::create_new(path)) {
       return bad_data("cannot be written: " + std::generic_category().message(errno), "check the folder",
                       path.string());
     }
-    ::close(descriptor);
     {
       Database database(folder, SQLite::OPEN_READWRITE, temporary.c_str());
       SQLite::Database& connection = database.connection;
@@ -132,14 +130,13 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
       transaction.commit();
       connection.exec("PRAGMA wal_checkpoint(TRUNCATE)");
     }
-    if (::link(path.c_str(), (folder / kDatabaseName).c_str()) != 0) {
-      const int error = errno;
-      ::unlink(path.c_str());
+    const int error = system::link(path, folder / kDatabaseName);
+    system::remove_name(path);
+    if (error != 0) {
       if (error == EEXIST) return there();
       return bad_data("cannot be written: " + std::generic_category().message(error), "choose a folder on a local disk",
                       folder.string());
     }
-    ::unlink(path.c_str());
     return files::flush_folder(folder);
   });
 }
@@ -151,7 +148,7 @@ Result<Store> Store::open(const fs::path& folder, std::function<void()> waiting)
                 folder.string());
   }
   return guarded(folder, [&]() -> Result<Store> {
-    const bool writable = ::access((folder / kDatabaseName).c_str(), W_OK) == 0 && ::access(folder.c_str(), W_OK) == 0;
+    const bool writable = system::may_write(folder / kDatabaseName) && system::may_write(folder);
     std::unique_ptr<Database> database;
     if (writable) {
       database = std::make_unique<Database>(folder, SQLite::OPEN_READWRITE, kDatabaseName, std::move(waiting));

@@ -1,12 +1,12 @@
 #include <SQLiteCpp/Backup.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <set>
 #include <system_error>
 
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/process.h"
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/study/store/store.h"
 #include "mbk/study/store/store_database.h"
@@ -27,11 +27,9 @@ struct TemporaryFolder {
 };
 
 Result<void> copy_database(Database& from, const fs::path& to) {
-  const int descriptor = ::open((to / kDatabaseName).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (descriptor < 0) {
+  if (!system::create_new(to / kDatabaseName)) {
     return bad_data("cannot be written: " + std::generic_category().message(errno), "check the folder", to.string());
   }
-  ::close(descriptor);
   SQLite::Database copy((to / kDatabaseName).string(), SQLite::OPEN_READWRITE);
   copy.exec("PRAGMA synchronous = FULL");
   SQLite::Backup backup(copy, from.connection);
@@ -40,7 +38,7 @@ Result<void> copy_database(Database& from, const fs::path& to) {
 }
 
 Result<void> copy_recording(const fs::path& from, const fs::path& to, bool link) {
-  if (link && ::link(from.c_str(), to.c_str()) == 0) return {};
+  if (link && system::link(from, to) == 0) return {};
   MBK_TRY(files::copy_hashed(from, to));
   return {};
 }
@@ -57,7 +55,7 @@ Result<CheckReport> Store::backup(const fs::path& to, bool link) {
   if (!lock) return tl::unexpected(lock.error());
   return guarded(folder(), [&]() -> Result<CheckReport> {
     const fs::path parent = to.has_parent_path() ? to.parent_path() : fs::path(".");
-    TemporaryFolder temporary{parent / fmt::format(".{}.{}.part", to.filename().string(), ::getpid())};
+    TemporaryFolder temporary{parent / fmt::format(".{}.{}.part", to.filename().string(), system::process_id())};
     fs::remove_all(temporary.path, code);
     MBK_TRY(files::make_folder(temporary.path));
     MBK_TRY(files::make_folder(temporary.path / kRecordingsName));

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <map>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include "mbk/base/core/printable.h"
@@ -57,10 +57,23 @@ struct Told {
 
 /// Since 1970, of a time as the log has it.
 std::optional<std::chrono::seconds> seconds_of(const std::string& time) {
-  std::tm parts{};
-  const char* const end = ::strptime(time.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  if (end == nullptr || *end != '\0') return std::nullopt;
-  return std::chrono::seconds(::timegm(&parts));
+  constexpr std::string_view kForm = "0000-00-00T00:00:00Z";
+  if (time.size() != kForm.size()) return std::nullopt;
+  for (std::size_t k = 0; k < kForm.size(); ++k) {
+    const bool digit = time[k] >= '0' && time[k] <= '9';
+    if (kForm[k] == '0' ? !digit : time[k] != kForm[k]) return std::nullopt;
+  }
+  const auto number = [&](std::size_t at, std::size_t digits) {
+    int value = 0;
+    for (std::size_t k = at; k < at + digits; ++k) value = 10 * value + (time[k] - '0');
+    return value;
+  };
+  const std::chrono::year_month_day day(std::chrono::year(number(0, 4)),
+                                        std::chrono::month(static_cast<unsigned>(number(5, 2))),
+                                        std::chrono::day(static_cast<unsigned>(number(8, 2))));
+  if (!day.ok()) return std::nullopt;
+  return std::chrono::sys_days(day).time_since_epoch() + std::chrono::hours(number(11, 2)) +
+         std::chrono::minutes(number(14, 2)) + std::chrono::seconds(number(17, 2));
 }
 
 /// The chain of the log, line by line.

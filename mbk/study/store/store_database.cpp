@@ -3,8 +3,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
-#include <sys/random.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -14,10 +12,11 @@
 #include <random>
 #include <span>
 #include <thread>
-#include <tuple>
 #include <utility>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/base/system/files.h"
+#include "mbk/base/system/process.h"
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/study/store/store_files.h"
@@ -93,12 +92,11 @@ Json or_null(const std::optional<std::int64_t>& number) {
 }
 
 /// By which it shows whether a database was written; nothing while changes are in its log alone.
-std::optional<std::tuple<ino_t, off_t, time_t, long>> whole_state(const std::filesystem::path& file) {
-  struct stat at {
-  }, log{};
-  if (::stat((file.string() + "-wal").c_str(), &log) == 0 && log.st_size > 0) return std::nullopt;
-  if (::stat(file.c_str(), &at) != 0) return std::nullopt;
-  return std::tuple(at.st_ino, at.st_size, at.st_mtim.tv_sec, at.st_mtim.tv_nsec);
+std::optional<system::FileStatus> whole_state(const std::filesystem::path& file) {
+  std::filesystem::path log = file;
+  log += "-wal";
+  if (const auto status = system::status_of(log); status && status->size > 0) return std::nullopt;
+  return system::status_of(file);
 }
 
 /// A database of these bytes that cannot be written.
@@ -226,7 +224,7 @@ std::string utc_now() {
 
 std::string new_salt() {
   std::array<unsigned char, 16> bytes{};
-  if (::getrandom(bytes.data(), bytes.size(), 0) != std::ssize(bytes)) {
+  if (!system::random_bytes(std::as_writable_bytes(std::span(bytes)))) {
     std::random_device device;
     for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(device());
   }

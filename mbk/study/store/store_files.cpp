@@ -1,15 +1,13 @@
 #include "mbk/study/store/store_files.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "mbk/files/contents/durable_files.h"
 
@@ -20,16 +18,17 @@ namespace fs = std::filesystem;
 Result<std::unique_ptr<FolderLock>> FolderLock::take(const fs::path& folder, Kind kind,
                                                      const std::function<void()>& waiting) {
   const fs::path file = folder / "lock";
-  int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (descriptor < 0 && (errno == EACCES || errno == EROFS)) {  // who may only read can lock it as well
-    descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  system::OpenFile opened = system::create_or_open(file);
+  if (!opened && (errno == EACCES || errno == EROFS)) {  // who may only read can lock it as well
+    opened = system::open_to_read(file);
   }
-  if (descriptor < 0) return files::cannot("cannot be locked", file, errno);
-  std::unique_ptr<FolderLock> lock(new FolderLock(descriptor));
+  if (!opened) return files::cannot("cannot be locked", file, errno);
+  std::unique_ptr<FolderLock> lock(new FolderLock(std::move(opened)));
   const auto began = std::chrono::steady_clock::now();
   bool told = !waiting;
-  while (::flock(descriptor, (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK && errno != EINTR) return files::cannot("cannot be locked", file, errno);
+  const auto how = kind == Kind::shared ? system::Lock::shared : system::Lock::alone;
+  while (const int code = system::try_lock(lock->file_, how)) {
+    if (code != EWOULDBLOCK) return files::cannot("cannot be locked", file, code);
     const auto waited = std::chrono::steady_clock::now() - began;
     if (!told && waited > kUnnoticedWait) {
       told = true;
@@ -42,10 +41,6 @@ Result<std::unique_ptr<FolderLock>> FolderLock::take(const fs::path& folder, Kin
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return lock;
-}
-
-FolderLock::~FolderLock() {
-  ::close(descriptor_);
 }
 
 std::string stored_name(const std::string& sha256, const std::string& extension) {

@@ -5,8 +5,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/system/files.h"
 
 /// The files of a study's folder.
 namespace mbk::store {
@@ -26,11 +28,11 @@ class FolderLock {
 
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock();
+  ~FolderLock() = default;
 
  private:
-  explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
-  int descriptor_;
+  explicit FolderLock(system::OpenFile file) : file_(std::move(file)) {}
+  system::OpenFile file_;
 };
 
 /// "recordings/ab/ab12….h5"

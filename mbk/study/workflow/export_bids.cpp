@@ -1,12 +1,13 @@
 #include "mbk/study/workflow/export_bids.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <map>
 #include <utility>
 
+#include "mbk/base/system/files.h"
 #include "mbk/files/recording/write_bids.h"
 #include "mbk/study/store/identifying.h"
 #include "mbk/study/store/store_files.h"
@@ -45,12 +46,11 @@ class NewFolder {
         !(fs::is_directory(made.target_, code) && fs::is_empty(made.target_, code))) {
       return fail(ErrorKind::usage, "already exists", "name a new folder", folder.string());
     }
-    std::string pattern = made.target_.string() + ".part-XXXXXX";
-    if (::mkdtemp(pattern.data()) == nullptr) {
+    made.path_ = system::make_temporary_folder(made.target_.string() + ".part");
+    if (made.path_.empty()) {
       return bad_data("cannot be made: " + std::generic_category().message(errno), "check the folder above it",
                       folder.string());
     }
-    made.path_ = pattern;
     return made;
   }
   NewFolder(NewFolder&& other) noexcept

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/system/files.h"
 
 namespace mbk {
 
@@ -15,12 +15,13 @@ class TemporaryFolder {
  public:
   /// @fails  data: it cannot be created
   static Result<TemporaryFolder> create(const std::string& prefix) {
-    std::error_code ignored;  // then mkdtemp fails
-    std::string name = (std::filesystem::temp_directory_path(ignored) / (prefix + "-XXXXXX")).string();
-    if (mkdtemp(name.data()) == nullptr) {
-      return bad_data("no temporary folder could be created", "set TMPDIR to a folder that exists", name);
+    std::error_code ignored;  // then it cannot be created
+    const std::filesystem::path begin = std::filesystem::temp_directory_path(ignored) / prefix;
+    std::filesystem::path made = system::make_temporary_folder(begin);
+    if (made.empty()) {
+      return bad_data("no temporary folder could be created", "set TMPDIR to a folder that exists", begin.string());
     }
-    return TemporaryFolder(name);
+    return TemporaryFolder(std::move(made));
   }
   TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
   TemporaryFolder& operator=(TemporaryFolder&&) = delete;

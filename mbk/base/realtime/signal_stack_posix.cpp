@@ -1,3 +1,5 @@
+#include <csignal>
+
 #include "mbk/base/realtime/signal_stack.h"
 
 namespace mbk::realtime {
@@ -7,15 +9,19 @@ constexpr std::size_t kBytes = std::size_t{64} << 10U;  // the registers of the 
 
 }  // namespace
 
-SignalStack::SignalStack() : bytes_(std::make_unique<std::byte[]>(kBytes)) {
+struct SignalStack::Before {
+  stack_t stack{};
+};
+
+SignalStack::SignalStack() : bytes_(std::make_unique<std::byte[]>(kBytes)), before_(std::make_unique<Before>()) {
   stack_t stack{};
   stack.ss_sp = bytes_.get();
   stack.ss_size = kBytes;
-  ours_ = sigaltstack(&stack, &before_) == 0;
+  if (sigaltstack(&stack, &before_->stack) != 0) before_.reset();
 }
 
 SignalStack::~SignalStack() {
-  if (ours_) sigaltstack(&before_, nullptr);
+  if (before_) sigaltstack(&before_->stack, nullptr);
 }
 
 }  // namespace mbk::realtime

@@ -5,7 +5,7 @@
 
 #include "mbk/base/core/result.h"
 
-namespace mbk::batch {
+namespace mbk::system {
 
 struct CommandOutput {
   int code = 0;  ///< exit code; 128 and the signal's number where one ended it
@@ -17,7 +17,4 @@ struct CommandOutput {
 /// @fails  usage: there is no such program. data: it did not end in time, or says more than 256 MB.
 [[nodiscard]] Result<CommandOutput> command_output(const std::vector<std::string>& command, double longest_s);
 
-/// For a shell: 'a b'.
-[[nodiscard]] std::string shell_quoted(const std::string& word);
-
-}  // namespace mbk::batch
+}  // namespace mbk::system

@@ -1,5 +1,3 @@
-#include "mbk/batch/child_process.h"
-
 #include <fcntl.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): kill
 #include <sys/prctl.h>
@@ -14,7 +12,9 @@
 #include <tuple>
 #include <utility>
 
-namespace mbk::batch {
+#include "mbk/base/system/child_process.h"
+
+namespace mbk::system {
 
 namespace {
 
@@ -61,12 +61,13 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept : id_(std::exchange(ot
 
 ChildProcess::~ChildProcess() {
   if (id_ < 0 || ended_) return;
-  send(SIGKILL);
+  send(Signal::kill);
   waitpid(id_, nullptr, 0);
 }
 
-void ChildProcess::send(int signal) const {
-  if (id_ > 0 && !ended_) kill(id_, signal);
+void ChildProcess::send(Signal signal) const {
+  if (id_ <= 0 || ended_) return;
+  kill(id_, signal == Signal::interrupt ? SIGINT : signal == Signal::terminate ? SIGTERM : SIGKILL);
 }
 
 std::optional<int> ChildProcess::wait(double longest) {
@@ -84,4 +85,4 @@ std::optional<int> ChildProcess::wait(double longest) {
   return ended_;
 }
 
-}  // namespace mbk::batch
+}  // namespace mbk::system

@@ -1,5 +1,3 @@
-#include "mbk/batch/command_output.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -15,7 +13,9 @@
 #include <system_error>
 #include <utility>
 
-namespace mbk::batch {
+#include "mbk/base/system/command_output.h"
+
+namespace mbk::system {
 namespace {
 
 constexpr std::size_t kLargestOutput = std::size_t{1} << 28U;
@@ -88,15 +88,4 @@ Result<CommandOutput> command_output(const std::vector<std::string>& command, do
   return said;
 }
 
-std::string shell_quoted(const std::string& word) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("-_./=:,@+").find(c) != std::string_view::npos;
-  };
-  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
-}  // namespace mbk::batch
+}  // namespace mbk::system

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,7 +7,10 @@
 
 #include "mbk/base/core/result.h"
 
-namespace mbk::batch {
+namespace mbk::system {
+
+/// What is asked of a process.
+enum class Signal { interrupt, terminate, kill };
 
 /// A program that runs beside this one; it is killed where it still runs when this goes, and asked to end (SIGTERM)
 /// where the thread that started it ends, whatever ends it.
@@ -26,17 +27,17 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();
 
-  void send(int signal) const;
-  [[nodiscard]] pid_t id() const { return id_; }
+  void send(Signal signal) const;
+  [[nodiscard]] int id() const { return id_; }
 
   /// Until it ends, at most so long [s].
   /// @returns  its exit code; 128 and the signal's number where one ended it; absent where it still runs
   [[nodiscard]] std::optional<int> wait(double longest);
 
  private:
-  explicit ChildProcess(pid_t id) : id_(id) {}
-  pid_t id_;
+  explicit ChildProcess(int id) : id_(id) {}
+  int id_;
   std::optional<int> ended_;
 };
 
-}  // namespace mbk::batch
+}  // namespace mbk::system

@@ -157,10 +157,6 @@ Writer::~Writer() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-std::string_view Ending::word() const {
-  return how == How::other ? std::string_view(other) : word_of(how);
-}
-
 Result<Writer> Writer::create(const fs::path& file, const Header& header, std::uint64_t expected) {
   const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor < 0 && errno == EEXIST) {

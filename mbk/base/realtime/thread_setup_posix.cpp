@@ -1,5 +1,3 @@
-#include "mbk/base/realtime/thread_setup.h"
-
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
@@ -9,6 +7,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+
+#include "mbk/base/realtime/thread_setup.h"
 
 namespace mbk::realtime {
 namespace {
@@ -22,6 +22,10 @@ void touch_stack() {
 
 bool lock_memory() noexcept {
   return mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+}
+
+void unlock_memory() noexcept {
+  munlockall();
 }
 
 ThreadSetup prepare_thread(int priority) {

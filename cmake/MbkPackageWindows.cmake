@@ -1,0 +1,10 @@
+# mbk-VERSION-windows-x86_64.zip: the program, its schemas, documents and licences.
+install(TARGETS mbk RUNTIME DESTINATION .)
+install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright DESTINATION .)
+install(DIRECTORY docs examples DESTINATION . PATTERN docs/site EXCLUDE)
+set(CPACK_GENERATOR ZIP)
+set(CPACK_PACKAGE_NAME mbk)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_FILE_NAME mbk-${PROJECT_VERSION}-windows-x86_64)
+set(CPACK_STRIP_FILES ON)
+include(CPack)
