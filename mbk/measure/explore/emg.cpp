@@ -22,10 +22,11 @@ constexpr double kBelowNyquist = 0.9;   ///< where the band ends, of the Nyquist
 constexpr std::size_t kFewLevels = 32;  ///< 5 bits
 constexpr Index kClippedRun = 3;        ///< [samples]
 constexpr Index kClippedRuns = 2;
-constexpr double kHumShare = 0.05;      ///< of the power in the band
-constexpr double kSlowEdge = 1.0;       ///< [Hz] below it is offset and drift
-constexpr double kArtefactEdge = 20.0;  ///< [Hz]
-constexpr double kWeakShare = 0.1;      ///< of the median root mean square
+constexpr double kHumShare = 0.05;        ///< of the power in the band
+constexpr double kSlowEdge = 1.0;         ///< [Hz] below it is offset and drift
+constexpr double kArtefactEdge = 20.0;    ///< [Hz]
+constexpr double kEnvelopeShare = 100.0;  ///< slow power over that in the band: no EMG is left
+constexpr double kWeakShare = 0.1;        ///< of the median root mean square
 constexpr int kEnvelopeOrder = 4;
 
 /// The cut-off of each pass, so that two passes of `order`/2 have half the power at `edge`.
@@ -219,10 +220,12 @@ std::vector<EmgFinding> check_emg(const Vector& raw, const EmgProcessing& how) {
   }
   const double slow = power_between(*spectrum, kSlowEdge, kArtefactEdge);
   if (slow > band) {
+    const bool envelope = slow > kEnvelopeShare * band;
     found.push_back({EmgProblem::movement_artefact,
                      fmt::format("the power between {:g} and {:g} Hz is {:.1f} times that in the band; limit 1",
                                  kSlowEdge, kArtefactEdge, slow / band),
-                     "fasten electrodes and cables"});
+                     envelope ? "record raw EMG; this looks like an envelope" : "fasten electrodes and cables",
+                     !envelope});
   }
   return found;
 }

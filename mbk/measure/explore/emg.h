@@ -39,7 +39,7 @@ namespace mbk::explore {
 ///  - clipping: two or more runs of at least three samples at the largest or the smallest value.
 ///  - mains hum: more than 5 % of the power in the band is at 50 or 60 Hz and its harmonics, above the median of the
 ///    neighbours between 3 and 8 Hz away.
-///  - movement artefact: more power between 1 and 20 Hz than in the band.
+///  - movement artefact: more power between 1 and 20 Hz than in the band; of 100 times more, unusable.
 /// Messages give value and limit.   @param how  as emg_processing_at gives it
 [[nodiscard]] std::vector<EmgFinding> check_emg(const Vector& raw, const EmgProcessing& how);
 

@@ -6,18 +6,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/core/units.h"
 #include "mbk/base/dsp/cross_spectrum.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {
 namespace {
 
-constexpr double kEmgMemory = 0.5;  ///< [s]
-constexpr double kSummedEmg = 0.1;  ///< [s], lags that are tested as one
+constexpr double kEmgMemory = 0.5;      ///< [s]
+constexpr double kSlowest = 20.0;       ///< [s]: what changes more slowly is drift
+constexpr double kSlowestOfBand = 3.0;  ///< [s], below the bands of the coherence
+constexpr double kSummedEmg = 0.1;      ///< [s], lags that are tested as one
 constexpr Index kEmgFolds = 8;
 constexpr Index kRowsPerEmgLag = 10;
 constexpr double kChanceOfEmg = 0.001;
@@ -34,6 +39,37 @@ Matrix beside(const Matrix& a, const Matrix& b) {
 
 PathColumns beside(const PathColumns& a, const PathColumns& b) {
   return {beside(a.measured, b.measured), beside(a.explained, b.explained), beside(a.judged, b.judged)};
+}
+
+/// Columns less what cosines with periods of `slowest` seconds or more explain of them, and their means, piece by
+/// piece: force that drifts, and EMG that grows with fatigue, would explain each other.
+/// @param of    rows of `ranges` under each other
+Matrix without_drift(const Matrix& of, const std::vector<RowRange>& ranges, const std::vector<RowRange>& pieces,
+                     double slowest, double sample_time) {
+  Matrix left = of;
+  Index at = 0;
+  std::size_t next = 0;
+  for (const RowRange& piece : pieces) {
+    std::vector<Index> rows;
+    const Index begin = at;
+    for (; next < ranges.size() && ranges[next].begin < piece.end; ++next) {
+      for (Index row = ranges[next].begin; row < ranges[next].end; ++row) rows.push_back(row - piece.begin);
+      at += ranges[next].size();
+    }
+    if (rows.empty()) continue;
+    const auto length = static_cast<double>(rows.back() + 1 - rows.front());
+    const auto cosines = static_cast<Index>(2.0 * length * sample_time / slowest);
+    Matrix slow(static_cast<Index>(rows.size()), cosines + 1);
+    for (Index k = 0; k < slow.cols(); ++k) {
+      for (Index i = 0; i < slow.rows(); ++i) {
+        const double phase = (static_cast<double>(rows[static_cast<std::size_t>(i)] - rows.front()) + 0.5) / length;
+        slow(i, k) = std::cos(std::numbers::pi * static_cast<double>(k) * phase);
+      }
+    }
+    auto part = left.middleRows(begin, slow.rows());
+    part -= (slow * numeric::householder_solve(slow, Matrix(part))).eval();
+  }
+  return left;
 }
 
 /// Lags of each signal, summed over groups of `wide`.
@@ -61,13 +97,17 @@ class EmgFit {
         rows_(rows),
         judged_(judged),
         memory_(static_cast<Index>(std::floor(kEmgMemory / s_.sample_time + 1e-9))),
-        Y_(centred(rows_of(s_.resistance, rows))),
-        lags_(centred(lagged(s_.muscles, 0, memory_, rows))),
+        Y_(fast(rows_of(s_.resistance, rows))),
+        lags_(fast(lagged(s_.muscles, 0, memory_, rows))),
         directions_(principal_directions(lags_)),
         emg_(lags_ * directions_) {}
 
-  EmgPath run(const PathColumns& intrinsic, const PathColumns& reflex) {
+  EmgPath run(PathColumns intrinsic, PathColumns reflex) {
     EmgPath found = named();
+    for (PathColumns* const path : {&intrinsic, &reflex}) {
+      path->measured = fast(path->measured);
+      path->explained = fast(path->explained);
+    }
     const PathColumns others = beside(intrinsic, reflex);
     const Index coefficients = others.measured.cols() + lags_.cols();
     if (row_count(rows_) < kRowsPerEmgLag * coefficients) {
@@ -79,13 +119,16 @@ class EmgFit {
     const WithEmg all = with_emg(others);
     const WithEmg without_reflex = reflex.measured.cols() > 0 ? with_emg(intrinsic) : all;
     judge(intrinsic, without_reflex, others, all, found);
-    add_gains(others, found);
+    if (found.explains) add_gains(others, found);
     add_coherence(found);
     return found;
   }
 
  private:
   [[nodiscard]] Index muscles() const { return s_.muscles.cols(); }
+  [[nodiscard]] Matrix fast(const Matrix& columns) const {
+    return without_drift(columns, rows_, s_.pieces, kSlowest, s_.sample_time);
+  }
 
   [[nodiscard]] EmgPath named() const {
     EmgPath found;
@@ -107,12 +150,46 @@ class EmgFit {
     const Vector gain = errors.col(0) - errors.col(best);
     const bool better = gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
     found.explains = better && found.p_value < kChanceOfEmg;
+    if (found.explains && follows(others)) {
+      found.explains = false;
+      found.why =
+          "EMG of the following 0.5 s predicts the force better than that of the 0.5 s before, so it follows the "
+          "force and does not cause it, or its clock is wrong";
+      return;
+    }
     const char* const chance = found.p_value < 1e-12 ? "p < 1e-12" : "p = ";
     found.why = fmt::format(
         "with EMG the paths predict {:.2f} % of the force, without it {:.2f} % (cross-validated); "
         "{}{} for EMG that adds nothing",
         100.0 * (1.0 - errors.col(best).mean()), 100.0 * (1.0 - errors.col(0).mean()), chance,
         found.p_value < 1e-12 ? "" : fmt::format("{:.1g}", found.p_value));
+  }
+
+  /// Whether the EMG after the force predicts it better than that before, by two standard errors.
+  [[nodiscard]] bool follows(const PathColumns& others) const {
+    const auto inside = rows_inside(rows_, s_.pieces, memory_, memory_);
+    std::vector<Index> kept;  // places of these rows among those that identify
+    Index at = 0;
+    std::size_t next = 0;
+    for (const RowRange& range : rows_) {
+      for (Index row = range.begin; row < range.end; ++row, ++at) {
+        while (next < inside.size() && row >= inside[next].end) ++next;
+        if (next < inside.size() && row >= inside[next].begin) kept.push_back(at);
+      }
+    }
+    if (kept.empty()) return false;
+    const Matrix Y = centred(Y_(kept, Eigen::all)), base = centred(others.explained(kept, Eigen::all));
+    const auto errors = [&](Index first, Index last) {
+      const Matrix lags =
+          without_drift(lagged(s_.muscles, first, last, inside), inside, s_.pieces, kSlowest, s_.sample_time);
+      const Matrix all =
+          cross_validated_errors(beside(base, lags * principal_directions(lags)), Y, base.cols(), kEmgFolds);
+      Index best = 0;
+      all.colwise().mean().minCoeff(&best);
+      return Vector(all.col(best));
+    };
+    const Vector gain = errors(0, memory_) - errors(-memory_, 0);
+    return gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
   }
 
   /// The other paths and as many directions of the EMG as predict best, at least one.
@@ -148,7 +225,7 @@ class EmgFit {
     }
   }
 
-  /// From a fit with all lags, none of them chosen, as the gain of a reflex.
+  /// From a fit with all lags, none of them chosen, as the gain of a reflex; with the sign of F_h.
   void add_gains(const PathColumns& others, EmgPath& found) const {
     const LaggedFit fit = fit_lagged(beside(others.measured, emg_), beside(others.explained, emg_), Y_, rows_);
     const Index r = emg_.cols();
@@ -182,8 +259,8 @@ class EmgFit {
     for (Eigen::MatrixXcd& S : of_motion.density) S = Eigen::MatrixXcd(S(kept, kept));
     const Matrix motion = dsp::multiple_coherence(of_motion, n), both = dsp::multiple_coherence(*spectra, n + m);
     const double K = spectra->independent_segments;
-    const auto corrected = [K](double coherence, double signals) {
-      return std::max(0.0, 1.0 - (1.0 - coherence) * K / (K - signals));
+    const auto corrected = [K](double coherence, double signals) {  // NaN stays
+      return std::fmax(std::isnan(coherence) ? kNaN : 0.0, 1.0 - (1.0 - coherence) * K / (K - signals));
     };
     for (std::size_t b = 0; b + 1 < kBandEdges.size(); ++b) {
       CoherenceBand band{kBandEdges[b], kBandEdges[b + 1], Vector::Zero(n), Vector::Zero(n)};

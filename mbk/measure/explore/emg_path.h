@@ -21,12 +21,13 @@ struct PathColumns {
 ///
 /// EMG explains where the paths together predict the force better than without it by two standard errors in eight-fold
 /// cross-validation, which also chooses the directions that are kept, and where the chance of EMG that adds nothing is
-/// below 0.1 %: an F test of whitened rows with the EMG summed over 100 ms, Bonferroni over the axes. EMG is a noisy
-/// measure of a muscle's activity, so that gains are those of the EMG that was measured: nearer to 0 than of the
-/// activity.
+/// below 0.1 %: an F test of whitened rows with the EMG summed over 100 ms, Bonferroni over the axes. It does not where
+/// the EMG of the 0.5 s after predicts better than that of the 0.5 s before, by two standard errors: it follows the
+/// force. Changes slower than 20 s are removed from all signals: force drifts, and EMG grows with fatigue. Gains are
+/// given where EMG explains, of F_h; they are those of the EMG that was measured, a noisy measure of activity.
 ///
-/// The coherence bands use segments of 2 s of all rows. Of K independent segments and q unrelated signals γ² is q/K on
-/// average; 1 − (1 − γ²) K/(K − q) is given, 0 at the least.
+/// The coherence bands use segments of 2 s of all rows, freed of changes slower than 3 s. Of K independent segments and
+/// q unrelated signals γ² is q/K on average; 1 − (1 − γ²) K/(K − q) is given, 0 at the least.
 /// @param rows    those that identify; 0.5 s of their piece stand before each
 /// @param judged  those that judge, likewise
 /// @param reflex  without columns where there is none

@@ -58,7 +58,7 @@ TEST(EmgPath, FindsTheForceOfEachMuscle) {
   EXPECT_TRUE(found.emg->explains) << found.emg->why;
   EXPECT_LT(found.emg->p_value, 1e-9);
   ASSERT_EQ(found.emg->muscles.size(), 2u);
-  const double gains[] = {-60.0, 90.0};
+  const double gains[] = {60.0, -90.0};  // of F, not of −F
   for (std::size_t k = 0; k < 2; ++k) {
     const Margin& gain = found.emg->muscles[k].gain[0];
     EXPECT_NEAR(gain.value, gains[k] * twitch.sum(), 2.0 * gain.half_width);
@@ -95,6 +95,28 @@ TEST(EmgPath, CreditsNoForceToUnrelatedEmg) {
   }
   EXPECT_LE(credited, 1);  // at 0.1 %, two of 25 have a chance of 0.03 %
   EXPECT_NEAR(added, 0.0, 0.05);
+}
+
+TEST(EmgPath, TakesDriftOfForceAndFatigueForNoEffect) {
+  const Vector x = binary_motion(kSamples, 21), time = Vector::LinSpaced(kSamples, 0.0, 1.0);
+  const Vector tired = (slow_activity(22).array() * (1.0 + time.array())).matrix();
+  const Vector f = convolved(x, kIntrinsic, -1) + 60.0 * time + 3.0 * coloured_noise(kSamples, 23);
+  const auto found = cascade_of(trial_with(x, f, emg_of(tired, 24)));
+  ASSERT_TRUE(found.emg);
+  EXPECT_FALSE(found.emg->explains) << found.emg->why;
+  EXPECT_TRUE(found.emg->muscles[0].gain.empty());
+}
+
+TEST(EmgPath, IsNoCauseOfTheForceThatItFollows) {
+  const Vector x = binary_motion(kSamples, 31), earlier = emg_of(slow_activity(32), 33);
+  Vector emg = Vector::Zero(kSamples);
+  emg.tail(kSamples - 25) = earlier.head(kSamples - 25);  // 200 ms
+  const Vector f = convolved(x, kIntrinsic, -1) + 90.0 * convolved(earlier, reflex_response(1.0, 20.0, 0.02, 60), 0) +
+                   3.0 * coloured_noise(kSamples, 34);
+  const auto found = cascade_of(trial_with(x, f, emg));
+  ASSERT_TRUE(found.emg);
+  EXPECT_FALSE(found.emg->explains);
+  EXPECT_NE(found.emg->why.find("follows"), std::string::npos) << found.emg->why;
 }
 
 TEST(EmgPath, TellsForceThatTheReflexPathWouldExplainToo) {

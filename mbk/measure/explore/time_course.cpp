@@ -103,7 +103,19 @@ Result<CourseRows> course_rows(const LimbSignals& signals, const CourseVariable&
 VaryingModel flexible(const VaryingRows& rows, Index varying) {
   constexpr Index kFunctions = 35, kRowsPerOne = 7;
   const Index functions = std::min(kFunctions, rows.Z.rows() / (kRowsPerOne * varying));
-  return {functions > 4 ? even_splines(functions - 3) : SplineBasis{0, {}}, varying};
+  if (functions <= 4) return {SplineBasis{0, {}}, varying};
+  // A schedule may hardly take some values; a function without rows would leave nothing identifiable.
+  SplineBasis basis = even_splines(functions - 3);
+  const auto between = [&](double low, double high) {
+    return (rows.s.array() >= low && rows.s.array() < high).count();
+  };
+  std::vector<double> kept;
+  for (const double knot : basis.knots) {
+    const bool enough = between(kept.empty() ? 0.0 : kept.back(), knot) >= kRowsPerOne * varying / 2;
+    if (enough && between(knot, 2.0) >= kRowsPerOne * varying / 2) kept.push_back(knot);
+  }
+  basis.knots = std::move(kept);
+  return {basis, varying};
 }
 
 /// Chance of so different coefficients of the functions where M, B and K do not change.

@@ -11,6 +11,7 @@
 #include "mbk/base/core/significant.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/identify/reversed_force.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/trial/filtered_band.h"
 
@@ -74,12 +75,8 @@ class Checker {
                       stiffness = eigenvalues(id_.model.K, 2);
     const bool damped = id_.structure != Structure::mass_spring;
     if (inertia.largest < 0.0 && stiffness.largest < 0.0 && (!damped || damping.largest < 0.0)) {
-      warn(WarningCode::force_sign_reversed,
-           "inertia, damping and stiffness are all negative: the force was probably recorded with the opposite sign",
-           axes() == 1 ? "F must be the force of the limb on the machine: put a minus before its column, naming all "
-                         "channels, as in --channels x=1,F=-2"
-                       : "F must be the force of the limb on the machine: put a minus before its columns, naming all "
-                         "channels, as in --channels x=2,y=3,Fx=-10,Fy=-11,xr=12,yr=13");
+      const Warning reversed = reversed_force(static_cast<int>(axes()));
+      warn(reversed.code, reversed.message, reversed.remedy);
       id_.usable = false;
       return;
     }

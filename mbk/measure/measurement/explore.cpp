@@ -19,6 +19,7 @@
 #include "mbk/measure/explore/parallel_cascade.h"
 #include "mbk/measure/explore/stretch_muscles.h"
 #include "mbk/measure/explore/time_course.h"
+#include "mbk/measure/identify/reversed_force.h"
 #include "mbk/measure/measurement/course_variable.h"
 #include "mbk/measure/measurement/muscles.h"
 #include "mbk/measure/preprocess/exclusions.h"
@@ -219,6 +220,20 @@ bool requested(const ExploreOptions& options, ExplorationPart part) {
   return !options.only || *options.only == part;
 }
 
+/// Whether M, B and K of what was fitted are all negative, as where the force has the opposite sign.
+bool is_reversed(const Exploration& found) {
+  const auto negative = [](const Matrix& M, const Matrix& B, const Matrix& K) {
+    return M.size() > 0 && std::max({M.diagonal().maxCoeff(), B.diagonal().maxCoeff(), K.diagonal().maxCoeff()}) < 0.0;
+  };
+  const auto of_model = [&](const ResponseModel& model) {
+    return model.identifiable && negative(model.M, model.B, model.K);
+  };
+  return (found.impulse_response && of_model(found.impulse_response->model)) ||
+         (found.parallel_cascade && of_model(found.parallel_cascade->intrinsic_model)) ||
+         (found.time_course &&
+          negative(found.time_course->M.mean, found.time_course->B.mean, found.time_course->K.mean));
+}
+
 /// What needs more than the recording holds is absent, and why stands in the notes.
 /// @fails  as course_variable
 Result<void> add_responses_in_time(std::span<const ExplorationTrial> trials, const ExploreOptions& options,
@@ -404,6 +419,10 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
     found.frequency_response = std::move(response);
   }
   MBK_TRY(add_responses_in_time(trials, options, found));
+  if (!options.signals && is_reversed(found)) {
+    found.warnings.push_back(identify::reversed_force(found.axes));
+    found.usable = false;
+  }
   if (requested(options, ExplorationPart::ramp_and_hold)) {
     MBK_TRY(add_plateaus(recordings, trials, options, found));
   }

@@ -28,7 +28,9 @@ inline constexpr const char* kCoContraction = "co-contraction";
 /// of both envelopes at each instant (Thoroughman & Shadmehr 1999, J Neurosci 19:8573).
 /// @param mvc  by channel [V]
 /// @param processing  envelope
-/// @fails  usage: co-contraction of other than two muscles. As explore::emg_envelope
+/// Notes say where a muscle's mean differs several-fold between trials, and where the schedule changes with time.
+/// @fails  usage: co-contraction of other than two muscles; a mean above 1.5 times that of maximal contraction. data:
+/// two muscles of the same signal. As explore::emg_envelope
 [[nodiscard]] Result<void> scale_muscles(std::span<ExplorationTrial> trials, const std::map<std::string, double>& mvc,
                                          const std::string& schedule, const EmgProcessing& processing);
 

@@ -93,6 +93,37 @@ TEST(Muscles, WhatIsMissingIsSaid) {
   EXPECT_EQ(add_muscles(rectified, kBoth, {}, trial).error().kind, ErrorKind::data);
 }
 
+TEST(Muscles, OneSignalUnderTwoNamesIsRefused) {
+  Recording twice = contractions(10.0);
+  twice.channels[1].values = 0.1 * twice.channels[0].values;
+  ExplorationTrial trial = trial_from(0.0, kSamples);
+  ASSERT_TRUE(add_muscles(twice, kBoth, {}, trial));
+  const auto scaled = scale_muscles({&trial, 1}, {}, "", {});
+  ASSERT_FALSE(scaled);
+  EXPECT_NE(scaled.error().line().find("same signal"), std::string::npos);
+}
+
+TEST(Muscles, DoubtfulAmplitudesAreSaid) {
+  Recording gained = contractions(10.0);
+  gained.channels[0].values *= 10.0;
+  std::vector<ExplorationTrial> trials = {trial_from(0.0, kSamples), trial_from(0.0, kSamples)};
+  ASSERT_TRUE(add_muscles(contractions(10.0), kBoth, {}, trials[0]));
+  ASSERT_TRUE(add_muscles(gained, kBoth, {}, trials[1]));
+  auto other = trials;
+  ASSERT_TRUE(scale_muscles(trials, {}, "", {}));
+  ASSERT_EQ(trials[0].notes.size(), 1u);
+  EXPECT_NE(trials[0].notes[0].find("gain of the amplifier"), std::string::npos) << trials[0].notes[0];
+  EXPECT_EQ(scale_muscles(other, {{kBoth[0], 1e-7}}, "", {}).error().kind, ErrorKind::usage);
+}
+
+TEST(Muscles, AScheduleThatDriftsIsSaid) {
+  ExplorationTrial trial = trial_from(0.0, kSamples);
+  ASSERT_TRUE(add_muscles(contractions(45.0), {kBoth[0]}, {}, trial));  // rises all the time
+  ASSERT_TRUE(scale_muscles({&trial, 1}, {}, kBoth[0], {}));
+  ASSERT_EQ(trial.notes.size(), 1u);
+  EXPECT_NE(trial.notes[0].find("changes with time"), std::string::npos) << trial.notes[0];
+}
+
 TEST(Muscles, CoContractionNeedsTwoOnOneScale) {
   ExplorationTrial one = trial_from(0.0, kSamples), both = one;
   ASSERT_TRUE(add_muscles(contractions(10.0), {kBoth[0]}, {}, one));

@@ -58,7 +58,7 @@ struct SecondOrderReflex {
 struct EmgMuscle {
   std::string channel;
   std::string unit;          ///< of its EMG: "MVC" or "mean", the mean of the recordings
-  std::vector<Margin> gain;  ///< n, −F_h at a steady EMG of 1 [N or N·m]: Σ k T over all lags
+  std::vector<Margin> gain;  ///< n, F_h at a steady EMG of 1 [N or N·m], −Σ k T over all lags; empty: not explained
 };
 
 /// Force that EMG explains, axis by axis.

@@ -78,7 +78,7 @@ void add_emg_path(const EmgPath& emg, const ParallelCascadeEstimate& found, Moti
       gains += (gains.empty() ? "" : ", ") + with_interval(one.value, one.half_width);
     }
     rows.push_back(
-        {muscle.channel, fmt::format("{} {} at an EMG of 1 {}", gains, units_of(motion).force, muscle.unit)});
+        {muscle.channel, fmt::format("F {} {} at an EMG of 1 {}", gains, units_of(motion).force, muscle.unit)});
   }
   for (const CoherenceBand& band : emg.coherence) {
     rows.push_back({fmt::format("{:g} to {:g} Hz", band.from_hz, band.to_hz),

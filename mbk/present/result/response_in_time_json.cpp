@@ -132,7 +132,8 @@ void describe(Fields<EmgMuscle>& fields) {
   fields.type("EmgMuscle");
   fields.add("channel", &EmgMuscle::channel);
   fields.add("unit", &EmgMuscle::unit, "of its EMG: MVC, or mean of the recordings");
-  fields.add("gain", &EmgMuscle::gain, "-F(t) at a steady EMG of 1, for each axis [N or N.m]");
+  fields.add("gain", &EmgMuscle::gain,
+             "force F of the limb at a steady EMG of 1, for each axis [N or N.m]; empty where EMG does not explain");
 }
 
 void describe(Fields<EmgShares>& fields) {

@@ -410,7 +410,7 @@ function emgOfForce({ result }: ExplorationReport): (Node | string)[] {
     heading(3, "EMG"),
     h("p", {}, `${emgSentence(emg)} ${emg.why.charAt(0).toUpperCase()}${emg.why.slice(1)}.`),
     ...(shares.length > 0 ? [table("Share of the force explained (VAF)", ["parts", "VAF"], shares, "numbers narrow")] : []),
-    ...(gains.length > 0 ? [table(`Force at a steady EMG of 1${result.units ? ` [${result.units.K === "N/m" ? "N" : "N·m"}]` : ""}`, ["muscle", "gain", "95 % interval", "1 is"], gains, "numbers narrow")] : []),
+    ...(gains.length > 0 ? [table(`Force F at a steady EMG of 1${result.units ? ` [${result.units.K === "N/m" ? "N" : "N·m"}]` : ""}`, ["muscle", "gain", "95 % interval", "1 is"], gains, "numbers narrow")] : []),
     ...(bands.length > 0 ? [table("Multiple coherence with the force, corrected for chance", ["band", "motion", "motion and EMG"], bands, "numbers narrow")] : []),
   ];
 }
