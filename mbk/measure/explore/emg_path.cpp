@@ -234,7 +234,7 @@ class EmgFit {
       for (Index axis = 0; axis < s_.axes; ++axis) {
         const Matrix C = fit.covariance[static_cast<std::size_t>(axis)].bottomRightCorner(r, r);
         found.muscles[static_cast<std::size_t>(k)].gain.push_back(
-            {sum.dot(fit.coefficients.col(axis).tail(r)),
+            {-sum.dot(fit.coefficients.col(axis).tail(r)),
              numeric::kNormal95 * std::sqrt(std::max(0.0, sum.dot(C * sum)))});
       }
     }
