@@ -9,7 +9,7 @@
 
 namespace mbk::system {
 
-/// What is asked of a process.
+/// What a process is told.
 enum class Signal { interrupt, terminate, kill };
 
 /// A program that runs beside this one; it is killed where it still runs when this goes, and asked to end (SIGTERM)

@@ -47,10 +47,10 @@ OVERLAPPED at(std::uint64_t place) {
   return where;
 }
 
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 30U;
+constexpr std::size_t kMaxPiece = std::size_t{1} << 30U;
 
 DWORD piece(std::size_t count) {
-  return static_cast<DWORD>(std::min(count, kMostAtOnce));
+  return static_cast<DWORD>(std::min(count, kMaxPiece));
 }
 
 std::optional<FileStatus> status_of(HANDLE handle) {
