@@ -1,5 +1,3 @@
-#include "mbk/experiment/drivers/plugin_device.h"
-
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -9,6 +7,7 @@
 
 #include "mbk/base/core/option_limits.h"
 #include "mbk/base/core/printable.h"
+#include "mbk/experiment/drivers/plugin_device.h"
 
 namespace mbk::drivers {
 namespace {

@@ -1,5 +1,3 @@
-#include "mbk/experiment/drivers/udp_device.h"
-
 #include <fmt/format.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -15,6 +13,7 @@
 
 #include "mbk/base/core/option_limits.h"
 #include "mbk/base/realtime/clock.h"
+#include "mbk/experiment/drivers/udp_device.h"
 
 namespace mbk::drivers {
 namespace {

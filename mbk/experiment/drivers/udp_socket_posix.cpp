@@ -1,5 +1,3 @@
-#include "mbk/experiment/drivers/udp_socket.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <netdb.h>
@@ -13,6 +11,8 @@
 #include <cstring>
 #include <ctime>
 #include <utility>
+
+#include "mbk/experiment/drivers/udp_socket.h"
 
 namespace mbk::drivers {
 namespace {

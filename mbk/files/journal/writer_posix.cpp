@@ -1,5 +1,3 @@
-#include "mbk/files/journal/journal.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/random.h>
@@ -15,6 +13,7 @@
 #include <utility>
 
 #include "mbk/files/journal/blocks.h"
+#include "mbk/files/journal/journal.h"
 
 namespace mbk::journal {
 namespace {
