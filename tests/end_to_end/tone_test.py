@@ -163,6 +163,16 @@ class Tone(Case):
                 self.fine("simulate", self.folder / "elbow.toml", "--seed", 10 * person + (side == "left"), "--out", recording,
                           "--quiet")
                 self.fine("study", "add", recording, "--study", study, "--participant", person, "--condition", side, "--quiet")
+        # The same limb, once over other positions (8) and once with a slower fastest speed (9).
+        full = short["elbow_healthy"]
+        for person, other in ((8, full.replace("amplitude_deg = 70", "amplitude_deg = 40")),
+                              (9, full.replace("[10, 60, 180]", "[10, 60, 120]"))):
+            for session, side, text in ((1, "left", full), (2, "left", other), (2, "right", full)):
+                (self.folder / "elbow.toml").write_text(text)
+                recording = self.folder / f"{person}_{session}_{side}.h5"
+                self.fine("simulate", self.folder / "elbow.toml", "--seed", 10 * person + session, "--out", recording, "--quiet")
+                self.fine("study", "add", recording, "--study", study, "--participant", person, "--session", session,
+                          "--condition", side, "--quiet")
         self.fine("study", "measure", "--study", study, "--quiet")
 
         def report(name, *arguments):
@@ -184,6 +194,32 @@ class Tone(Case):
         side = next(one for one in found["sides"] if one["outcome"] == "stretch_increasing_slope")
         self.assertEqual((side["error_basis"], side["verdict"], side["range_verdict"]), ("recordings", "unknown", "above"))
         self.assertEqual({one["participant"] for one in found["recordings"]}, {1})
+
+        def one_of(rows, outcome, **facts):
+            return next(row for row in rows if row["outcome"] == f"stretch_increasing_{outcome}" and
+                        all(row[name] == value for name, value in facts.items()))
+
+        # As controls they do not count where the outcome depends on what differs.
+        wider = report("wider.json", "--participant", 1, "--group", "controls=2-9")
+        for outcome, controls in (("torque", 6), ("slope", 7)):
+            normal = one_of(wider["ranges"], outcome, condition="left")["normal"]
+            self.assertEqual((normal["controls"], normal["not_comparable"]), (controls, 8 - controls), outcome)
+            normal = one_of(wider["sides"], outcome)["normal"]
+            self.assertEqual((normal["controls"], normal["not_comparable"]), (controls, 8 - controls), outcome)
+        for person, outcomes in ((8, ("torque", "slope")), (9, ("torque",))):
+            page = report(f"{person}.json", "--participant", person, "--group", "controls=2-7")
+            for outcome in outcomes:
+                row = one_of(page["ranges"], outcome, condition="left")
+                self.assertEqual((row["verdict"], row["normal"]["controls"], row["normal"]["not_comparable"]), ("unknown", 0, 6))
+                self.assertTrue(row["why_not_comparable"])
+                row = one_of(page["sides"], outcome)
+                self.assertEqual((row["verdict"], row["range_verdict"], row["error95"]), ("unknown", "unknown", None))
+                self.assertIn("left ", row["why_not_comparable"])
+                change = one_of(page["courses"], outcome, condition="left")["participants"][0]["changes"][0]
+                self.assertEqual(change["verdict"], "unknown")
+                self.assertIn("before ", change["why_not_comparable"])
+            self.assertNotIn("why_not_comparable", one_of(page["ranges"], "torque", condition="right"))
+        self.assertNotIn("why_not_comparable", one_of(page["sides"], "slope"))  # of person 9
 
         few = report("few.json", "--participant", 1, "--group", "controls=2-5")
         self.assertEqual({one["verdict"] for one in few["ranges"]}, {"unknown"})

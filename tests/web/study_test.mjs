@@ -175,7 +175,7 @@ test("the page of a participant holds nothing of others", () => {
 });
 
 test("the last session is drawn over the range of the controls, and sides are compared", () => {
-  const normal = (controls, range95) => ({ controls, mean: range95[0] === null ? null : (range95[0] + range95[1]) / 2, range95 });
+  const normal = (controls, range95) => ({ controls, not_comparable: 0, mean: range95[0] === null ? null : (range95[0] + range95[1]) / 2, range95 });
   const curve = (speed, controls, high) => ({ speed, torque: [1, 2, 3], controls, above: high === null ? null : 2 / 3, below: high === null ? null : 0,
     mean: [high, high, high].map((one) => one && one / 2), low95: [high && 0, high && 0, high && 0], high95: [high, high, null] });
   const file = changed(same, "controls", (json) => {
@@ -183,6 +183,7 @@ test("the last session is drawn over the range of the controls, and sides are co
     json.stretches = [{ condition: "left", session: 2, results: 1, direction: 1, position_unit: "°", torque_unit: "N·m", position: [90, 110, 130], speeds: [curve(10, 6, 1.5), curve(180, 4, null)] }];
     json.ranges = ["slope", "catch"].map((name) => ({ condition: "left", outcome: `stretch_increasing_${name}`, unit: "N·m·s/rad", session: 2, results: 1, value: 0.25, without: name === "catch" ? 3 : 0,
       normal: name === "catch" ? normal(3, [null, null]) : normal(6, [0.1, 0.2]), verdict: name === "catch" ? "unknown" : "above" }));
+    json.ranges.push({ ...json.ranges[1], outcome: "stretch_increasing_torque", without: 0, normal: { ...normal(2, [null, null]), not_comparable: 4 }, why_not_comparable: "4 of 6 controls were stretched to another speed" });
     json.sides = [{ left_condition: "left", right_condition: "right", outcome: "stretch_increasing_slope", unit: "N·m·s/rad", session: 2, left: 0.25, right: 0.1, difference: 0.15, error95: 0.02,
       error95_interval: [null, null], error_basis: "recordings", why_unknown: "only 2 people have two sessions", heavy_tails: false, verdict: "unknown", normal: normal(6, [-0.01, 0.02]), range_verdict: "above" }];
   });
@@ -194,7 +195,7 @@ test("the last session is drawn over the range of the controls, and sides are co
     assert.match(notes[0], /Above the range at 67\u00a0% of the positions \(6 controls\)/);
     assert.match(notes[1], /No range: 4 controls; 5 are needed/);
     const rows = await tab.$$eval("#controls table tbody tr", (all) => all.map((row) => row.lastElementChild.textContent));
-    assert.deepEqual(rows, ["above the range", "not known"]);
+    assert.deepEqual(rows, ["above the range", "not comparable: 4 of 6 controls were stretched to another speed", "not known"]);
     assert.match(await tab.textContent("#controls table"), /3 of 6 controls; 5 are needed/);
     assert.equal(Number(await tab.getAttribute('#sides data[data-name="side-difference"]', "value")), 0.15);
     assert.match(await tab.textContent("#sides"), /only 2 people have two sessions/);

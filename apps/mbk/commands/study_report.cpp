@@ -54,10 +54,13 @@ Result<std::string> document_of(const StudyReportArguments& arguments, const sto
   const auto controls = MBK_TRY(controls_of(arguments));
   const auto options =
       arguments.participant ? statistics::StatisticsOptions() : MBK_TRY(statistics_options(arguments.comparing));
-  auto statistics = MBK_TRY(statistics::study_statistics(columns, options));
+  auto extents = MBK_TRY(longitudinal::stretch_extents(study, list, columns));
+  auto statistics = MBK_TRY(statistics::study_statistics(
+      arguments.participant ? longitudinal::comparable_columns(columns, extents, *arguments.participant) : columns,
+      options));
   const std::string command = command_of(arguments, list);
   auto report = MBK_TRY(longitudinal::study_report(std::move(list), std::move(columns), std::move(statistics),
-                                                   arguments.participant, arguments.outcome));
+                                                   arguments.participant, arguments.outcome, std::move(extents)));
   report.command = command;
   report.note = printable(arguments.note);
   if (arguments.participant) {

@@ -16,7 +16,12 @@ namespace {
 /// Among more people than that one alone changes little, and leaving each out in turn costs much.
 constexpr int kMaxComparedPeople = 40;
 
-using SessionValues = std::map<std::int64_t, std::vector<double>>;  ///< by session
+/// Results of one person in one session, and the recordings that they are of.
+struct ValuesOfSession {
+  std::vector<double> values;
+  std::vector<std::int64_t> recordings;
+};
+using SessionValues = std::map<std::int64_t, ValuesOfSession>;  ///< by session
 
 double mean_of(const std::vector<double>& values, bool axial) {
   const auto size = static_cast<Index>(values.size());
@@ -39,13 +44,17 @@ std::map<std::int64_t, SessionValues> values_of(const store::OutcomeColumns& col
     const store::TrialRow& trial = columns.trials[k];
     if (participant && trial.participant != *participant) continue;
     if (columns.conditions[static_cast<std::size_t>(trial.condition)] != condition) continue;
-    if (std::isfinite(column.values[k])) people[trial.participant][trial.session].push_back(column.values[k]);
+    if (!std::isfinite(column.values[k])) continue;
+    ValuesOfSession& session = people[trial.participant][trial.session];
+    session.values.push_back(column.values[k]);
+    session.recordings.push_back(trial.recording);
   }
   return people;
 }
 
 /// Sets what may be said of a change.
 void judge(Change& change, const Course& course, const DetectableChange& error) {
+  if (!change.why_not_comparable.empty()) return;
   const auto results = [&](std::int64_t session) {
     return std::ranges::find(course.sessions, session, &SessionMean::session)->results;
   };
@@ -59,25 +68,28 @@ void judge(Change& change, const Course& course, const DetectableChange& error) 
 }
 
 Change change_between(const SessionMean& first, const SessionMean& last, const Course& course, bool axial,
-                      const DetectableChange& error) {
+                      const DetectableChange& error, std::string why_not_comparable) {
   Change change{.first_session = first.session,
                 .last_session = last.session,
                 .first = first.mean,
                 .last = last.mean,
-                .difference = difference_of(last.mean, first.mean, axial)};
+                .difference = difference_of(last.mean, first.mean, axial),
+                .why_not_comparable = std::move(why_not_comparable)};
   judge(change, course, error);
   return change;
 }
 
-/// The minimal detectable change by everyone else.
+/// The minimal detectable change by results of everyone else that are comparable with a session's.
 DetectableChange without(std::int64_t participant, const store::OutcomeColumns& columns,
-                         const store::OutcomeColumn& column, const std::string& condition) {
+                         const store::OutcomeColumn& column, const std::string& condition,
+                         const StretchExtents& extents, const ValuesOfSession& last) {
   store::OutcomeColumns others{{condition}, {}, {{column.name, column.unit, {}, {}}}};
   store::OutcomeColumn& kept = others.outcomes.front();
   for (std::size_t k = 0; k < columns.trials.size(); ++k) {
     store::TrialRow trial = columns.trials[k];
     if (trial.participant == participant ||
-        columns.conditions[static_cast<std::size_t>(trial.condition)] != condition) {
+        columns.conditions[static_cast<std::size_t>(trial.condition)] != condition ||
+        !extents.comparable(column.name, {trial.recording}, last.recordings)) {
       continue;
     }
     trial.condition = 0;
@@ -90,26 +102,33 @@ DetectableChange without(std::int64_t participant, const store::OutcomeColumns& 
   return detectable_change(found->reliability.front());
 }
 
-Course course_of(std::int64_t participant, const SessionValues& values, bool axial, const DetectableChange& error) {
+Course course_of(std::int64_t participant, const SessionValues& values, const OutcomeCourses& outcome,
+                 const DetectableChange& error, const StretchExtents& extents) {
+  const bool axial = outcome.axial;
   Course course{.participant = participant};
   for (const auto& [session, results] : values) {
-    SessionMean one{session, static_cast<int>(results.size()), mean_of(results, axial)};
+    SessionMean one{session, static_cast<int>(results.values.size()), mean_of(results.values, axial)};
     if (axial && !course.sessions.empty()) {  // the half turn that is nearer
       const double first = course.sessions.front().mean;
       one.mean = first + difference_of(one.mean, first, true);
     }
     course.sessions.push_back(one);
   }
+  const auto change = [&](const SessionMean& from, const SessionMean& to) {
+    return change_between(from, to, course, axial, error,
+                          extents.difference(outcome.outcome, values.at(to.session).recordings,
+                                             values.at(from.session).recordings, "", "before "));
+  };
   const SessionMean& first = course.sessions.front();
   double sum = 0.0, variance = 0.0;
   for (const SessionMean& one : course.sessions) {
     sum += one.mean;
     variance += error.session + error.trial / one.results;
     if (&one == &first) continue;
-    course.changes.push_back(change_between(first, one, course, axial, error));
+    course.changes.push_back(change(first, one));
   }
   if (course.sessions.size() > 2) {
-    course.latest = change_between(*(course.sessions.end() - 2), course.sessions.back(), course, axial, error);
+    course.latest = change(*(course.sessions.end() - 2), course.sessions.back());
   }
   const auto count = static_cast<double>(course.sessions.size());
   course.mean = sum / count;
@@ -189,7 +208,7 @@ ChangeVerdict verdict_of(double difference, double mdc, const Interval& mdc95) {
 }
 
 std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns, const statistics::StudyStatistics& statistics,
-                                    std::optional<std::int64_t> participant) {
+                                    std::optional<std::int64_t> participant, const StretchExtents& extents) {
   std::vector<OutcomeCourses> all;
   for (const statistics::OutcomeReliability& reliability : statistics.reliability) {
     const auto column = std::ranges::find(columns.outcomes, reliability.outcome, &store::OutcomeColumn::name);
@@ -202,16 +221,17 @@ std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns, const 
     const DetectableChange error = detectable_change(reliability);
     one.why_unknown = error.why_unknown;
     for (const auto& [number, values] : values_of(columns, *column, one.condition, participant)) {
-      Course course = course_of(number, values, one.axial, error);
+      Course course = course_of(number, values, one, error, extents);
       const auto large = [](const Change& change) { return std::abs(change.difference) > change.mdc; };
       const bool stands_out = one.repeated_participants <= kMaxComparedPeople &&
                               (std::ranges::any_of(course.changes, large) || (course.latest && large(*course.latest)));
       const DetectableChange others =
-          stands_out ? without(number, columns, *column, one.condition) : DetectableChange();
+          stands_out ? without(number, columns, *column, one.condition, extents, values.rbegin()->second)
+                     : DetectableChange();
       if (stands_out && others.known()) {
         const auto again = [&](Change& change) {
           judge(change, course, others);
-          change.by_others = true;
+          change.by_others = change.why_not_comparable.empty();
         };
         std::ranges::for_each(course.changes, again);
         if (course.latest) again(*course.latest);

@@ -7,6 +7,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/core/words.h"
+#include "mbk/study/longitudinal/stretch_extent.h"
 #include "mbk/study/reliability/support.h"
 #include "mbk/study/statistics/study_statistics.h"
 #include "mbk/study/store/store_values.h"
@@ -47,6 +48,7 @@ struct Change {
   bool by_others = false;         ///< by the variances of all other people, since it is more than by those of all
   bool heavy_tails = false;       ///< errors of those people have heavy tails: mdc95 does not hold
   ChangeVerdict verdict = ChangeVerdict::unknown;
+  std::string why_not_comparable = {};  ///< as a clause; then mdc and verdict are unknown
 };
 
 /// One outcome of one person under one condition.
@@ -93,10 +95,13 @@ struct DetectableChange {
 
 /// For every outcome and condition of the statistics. A person whose difference exceeds the minimal detectable change
 /// of all people is judged with the minimal detectable change of all others, if known and for at most 40 such people:
-/// one large change among few people would otherwise mask itself.
+/// one large change among few people would otherwise mask itself. Sessions that are not comparable have no verdict.
+/// @param statistics  with a participant, of comparable_columns(); otherwise their variances include results that are
+///     not comparable
 /// @param participant  only that one's courses; the minimal detectable change is still that of all people
 [[nodiscard]] std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns,
                                                   const statistics::StudyStatistics& statistics,
-                                                  std::optional<std::int64_t> participant = {});
+                                                  std::optional<std::int64_t> participant = {},
+                                                  const StretchExtents& extents = {});
 
 }  // namespace mbk::longitudinal

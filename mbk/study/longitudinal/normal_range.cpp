@@ -1,5 +1,7 @@
 #include "mbk/study/longitudinal/normal_range.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,6 +25,12 @@ NormalRange normal_range(const std::vector<double>& values) {
   return range;
 }
 
+std::string too_few_comparable(const NormalRange& normal) {
+  if (normal.controls >= reliability::kMinPeople || normal.not_comparable == 0) return "";
+  return fmt::format("{} of {} controls were stretched to another speed or over other positions", normal.not_comparable,
+                     normal.controls + normal.not_comparable);
+}
+
 RangeVerdict verdict_of(double value, const NormalRange& normal) {
   const auto& [low, high] = normal.range95;
   if (!std::isfinite(value) || !std::isfinite(low) || !std::isfinite(high)) return RangeVerdict::unknown;
@@ -40,6 +48,7 @@ std::map<std::int64_t, std::map<std::int64_t, SessionResult>> session_results(co
     const double error = column.standard_errors.empty() ? kNaN : column.standard_errors[k];
     one.mean = (one.results > 0 ? one.mean : 0.0) + column.values[k];  // sums, until all are there
     one.standard_error = (one.results > 0 ? one.standard_error : 0.0) + error * error;
+    one.recordings.push_back(trial.recording);
     ++one.results;
   }
   for (auto& [participant, sessions] : all) {
@@ -60,7 +69,7 @@ std::map<std::int64_t, std::int64_t> last_sessions(const store::OutcomeColumns& 
 }
 
 std::vector<OutcomeRange> outcome_ranges(const store::OutcomeColumns& columns, std::int64_t participant,
-                                         const std::set<std::int64_t>& controls) {
+                                         const std::set<std::int64_t>& controls, const StretchExtents& extents) {
   std::vector<OutcomeRange> ranges;
   for (int condition = 0; condition < static_cast<int>(columns.conditions.size()); ++condition) {
     const auto last = last_sessions(columns, condition);
@@ -83,14 +92,23 @@ std::vector<OutcomeRange> outcome_ranges(const store::OutcomeColumns& columns, s
                          .session = own->second,
                          .results = one->results,
                          .value = one->mean};
+      range.why_not_comparable = extents.difference(column.name, one->recordings, {});
       std::vector<double> values;
+      int not_comparable = 0;
       for (const std::int64_t control : controls) {
         if (!last.contains(control)) continue;
         const SessionResult* const theirs = found(control);
-        if (theirs != nullptr) values.push_back(theirs->mean);
-        range.without += theirs == nullptr ? 1 : 0;
+        if (theirs == nullptr) {
+          ++range.without;
+        } else if (extents.comparable(column.name, theirs->recordings, one->recordings)) {
+          values.push_back(theirs->mean);
+        } else {
+          ++not_comparable;
+        }
       }
       range.normal = normal_range(values);
+      range.normal.not_comparable = not_comparable;
+      if (range.why_not_comparable.empty()) range.why_not_comparable = too_few_comparable(range.normal);
       range.verdict = verdict_of(range.value, range.normal);
       ranges.push_back(std::move(range));
     }

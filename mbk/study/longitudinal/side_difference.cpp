@@ -41,6 +41,11 @@ std::string trimmed(const std::string& text) {
 struct BothSides {
   SessionResult left, right;
   [[nodiscard]] double difference() const { return left.mean - right.mean; }
+  [[nodiscard]] std::vector<std::int64_t> recordings() const {
+    std::vector<std::int64_t> all = left.recordings;
+    all.insert(all.end(), right.recordings.begin(), right.recordings.end());
+    return all;
+  }
 };
 using SessionSides = std::map<std::int64_t, BothSides>;  ///< by session
 
@@ -59,19 +64,21 @@ std::map<std::int64_t, SessionSides> sides_of(const store::OutcomeColumns& colum
   return all;
 }
 
-/// How differences of all other people vary between sessions.
+/// How differences of all other people vary between sessions that are comparable with the recordings.
 DetectableChange error_of_others(const std::map<std::int64_t, SessionSides>& people, std::int64_t participant,
-                                 const store::OutcomeColumn& column) {
+                                 const store::OutcomeColumn& column, const StretchExtents& extents,
+                                 const std::vector<std::int64_t>& own) {
   store::OutcomeColumns differences{{""}, {}, {{column.name, column.unit, {}, {}}}};
   for (const auto& [person, sessions] : people) {
     if (person == participant) continue;
     for (const auto& [session, both] : sessions) {
+      if (!extents.comparable(column.name, both.recordings(), own)) continue;
       differences.trials.push_back({std::ssize(differences.trials) + 1, person, session, 1, 0});
       differences.outcomes.front().values.push_back(both.difference());
     }
   }
   const auto found = statistics::study_statistics(differences);
-  if (!found || found->reliability.empty()) return {.why_unknown = "no other person has results of both sides"};
+  if (!found || found->reliability.empty()) return {.why_unknown = "no other person has such results of both sides"};
   return detectable_change(found->reliability.front());
 }
 
@@ -110,7 +117,7 @@ std::vector<SidePair> side_pairs(const std::vector<std::string>& conditions) {
 }
 
 std::vector<SideDifference> side_differences(const store::OutcomeColumns& columns, std::int64_t participant,
-                                             const std::set<std::int64_t>& controls) {
+                                             const std::set<std::int64_t>& controls, const StretchExtents& extents) {
   std::vector<SideDifference> all;
   for (const SidePair& pair : side_pairs(columns.conditions)) {
     for (const store::OutcomeColumn& column : columns.outcomes) {
@@ -127,12 +134,28 @@ std::vector<SideDifference> side_differences(const store::OutcomeColumns& column
                          .left = sides.left.mean,
                          .right = sides.right.mean,
                          .difference = sides.difference()};
-      judge_sides(one, sides, error_of_others(people, participant, column));
+      const std::vector<std::int64_t> recordings = sides.recordings();
+      one.why_not_comparable =
+          extents.difference(column.name, sides.left.recordings, sides.right.recordings, "left ", "right ");
+      if (!one.why_not_comparable.empty()) {
+        all.push_back(std::move(one));
+        continue;
+      }
+      judge_sides(one, sides, error_of_others(people, participant, column, extents, recordings));
       std::vector<double> values;
+      int not_comparable = 0;
       for (const auto& [person, sessions] : people) {
-        if (controls.contains(person)) values.push_back(sessions.rbegin()->second.difference());
+        if (!controls.contains(person)) continue;
+        const BothSides& last = sessions.rbegin()->second;
+        if (extents.comparable(column.name, last.recordings(), recordings)) {
+          values.push_back(last.difference());
+        } else {
+          ++not_comparable;
+        }
       }
       one.normal = normal_range(values);
+      one.normal.not_comparable = not_comparable;
+      one.why_no_comparable_range = too_few_comparable(one.normal);
       one.range_verdict = verdict_of(one.difference, one.normal);
       all.push_back(std::move(one));
     }

@@ -48,14 +48,18 @@ struct SideDifference {
   ChangeVerdict verdict = ChangeVerdict::unknown;  ///< whether the sides differ by more than that error
   NormalRange normal;                              ///< of the controls' differences in their last sessions
   RangeVerdict range_verdict = RangeVerdict::unknown;
+  std::string why_not_comparable = {};       ///< why the sides are not comparable, as a clause; without verdicts
+  std::string why_no_comparable_range = {};  ///< the same of the controls' differences; without range_verdict
 };
 
 /// Of each outcome that the participant has of both sides; orientations are omitted. The error is 1.96 σ, with σ² the
 /// variance (REML) of left − right between sessions of a person, in all people but the participant; the mean of more
-/// trials is not taken to be better.
+/// trials is not taken to be better. People whose sides are not comparable with each other and with the participant's
+/// do not count, neither for the error nor for the range.
 /// @param controls  without the participant
 [[nodiscard]] std::vector<SideDifference> side_differences(const store::OutcomeColumns& columns,
                                                            std::int64_t participant,
-                                                           const std::set<std::int64_t>& controls);
+                                                           const std::set<std::int64_t>& controls,
+                                                           const StretchExtents& extents = {});
 
 }  // namespace mbk::longitudinal

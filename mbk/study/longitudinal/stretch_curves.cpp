@@ -10,14 +10,12 @@
 
 #include "mbk/base/core/units.h"
 #include "mbk/study/longitudinal/normal_range.h"
+#include "mbk/study/longitudinal/stretch_extent.h"
 
 namespace mbk::longitudinal {
 namespace {
 
 using Json = nlohmann::json;
-
-/// Speeds that differ by more are different speeds.
-constexpr double kSameSpeed = 0.1;
 
 /// A control who was stretched over less of the positions than that does not count.
 constexpr double kCoveredShare = 0.8;
@@ -47,12 +45,9 @@ Vector vector_of(const Json& values, double scale) {
 
 /// The curves of a document of `mbk explore`; none where it has no stretches.
 Result<RecordedKinds> read_stretches(const std::string& text) {
-  const auto damaged = [] {
-    return bad_data("a stored result of stretches cannot be read", "'mbk study check' finds what is damaged");
-  };
   RecordedKinds kinds;
   const Json document = Json::parse(text, nullptr, false);
-  if (!document.is_object()) return damaged();
+  if (!document.is_object()) return damaged_stretches();
   if (!document.contains("stretch") || !document["stretch"].is_object()) return kinds;
   try {
     const Json& stretch = document["stretch"];
@@ -64,7 +59,7 @@ Result<RecordedKinds> read_stretches(const std::string& text) {
       for (const Json& speed : found.at("speeds")) {
         const Vector excess = vector_of(speed.at("excess"), 1.0);
         if (passive.size() != one.position.size() || (excess.size() > 0 && excess.size() != passive.size())) {
-          return damaged();
+          return damaged_stretches();
         }
         one.torque[scale * speed.at("speed").get<double>()] = excess.size() > 0 ? Vector(passive + excess) : passive;
       }
@@ -72,7 +67,7 @@ Result<RecordedKinds> read_stretches(const std::string& text) {
       kinds[{direction, stretch.at("axis").get<int>(), turns}] = std::move(one);
     }
   } catch (const Json::exception&) {
-    return damaged();
+    return damaged_stretches();
   }
   return kinds;
 }
@@ -90,9 +85,9 @@ double torque_at(const Vector& position, const Vector& torque, double at) {
 /// Of the speed that is nearest; nothing where none is near.
 const Vector* torque_near(const RecordedStretches& recorded, double speed) {
   const Vector* found = nullptr;
-  double nearest = kSameSpeed * speed;
+  double nearest = 0.0;
   for (const auto& [other, torque] : recorded.torque) {
-    if (std::abs(other - speed) > nearest) continue;
+    if (!same_speed(other, speed) || (found != nullptr && std::abs(other - speed) > nearest)) continue;
     nearest = std::abs(other - speed);
     found = &torque;
   }

@@ -41,6 +41,9 @@ void describe(Fields<Change>& fields) {
       "verdict", &Change::verdict,
       "beyond-error: more than the upper end of mdc95_interval, without heavy_tails; uncertain: more than mdc95; "
       "within-error: at most mdc95; unknown: mdc95 is unknown");
+  fields.add_unless_empty("why_not_comparable", &Change::why_not_comparable,
+                          "why stretches of these sessions are not comparable, as a clause; mdc95 and verdict are "
+                          "then unknown");
 }
 
 void describe(Fields<Course>& fields) {
@@ -73,6 +76,9 @@ void describe(Fields<NormalRange>& fields) {
   fields.add("mean", &NormalRange::mean, "null: fewer than five controls");
   fields.add("range95", &NormalRange::range95,
              "prediction interval of one further control, by Student's t; null: fewer than five controls");
+  fields.add("not_comparable", &NormalRange::not_comparable,
+             "controls who were stretched to another fastest speed (more than 10 %) or over other positions (less than "
+             "80 % in common), on which the outcome depends; they do not count");
 }
 
 void describe(Fields<OutcomeRange>& fields) {
@@ -87,6 +93,8 @@ void describe(Fields<OutcomeRange>& fields) {
   fields.add("without", &OutcomeRange::without,
              "controls with a result under this condition that lacks this number; the range does not tell of them");
   fields.add("verdict", &OutcomeRange::verdict, "where the value is beside range95");
+  fields.add_unless_empty("why_not_comparable", &OutcomeRange::why_not_comparable,
+                          "why no range of comparable stretches applies to the value, as a clause");
 }
 
 void describe(Fields<SideDifference>& fields) {
@@ -114,6 +122,11 @@ void describe(Fields<SideDifference>& fields) {
              "uncertain: by more than error95; within-error: by at most error95; unknown: error_basis is not sessions");
   fields.add("normal", &SideDifference::normal, "of left − right of the controls");
   fields.add("range_verdict", &SideDifference::range_verdict, "where the difference is beside normal.range95");
+  fields.add_unless_empty("why_not_comparable", &SideDifference::why_not_comparable,
+                          "why the stretches of left and right are not comparable, as a clause; error95, range and "
+                          "verdicts are then unknown");
+  fields.add_unless_empty("why_no_comparable_range", &SideDifference::why_no_comparable_range,
+                          "why no range of comparable stretches applies to the difference, as a clause");
 }
 
 void describe(Fields<StretchCurve>& fields) {
@@ -378,7 +391,7 @@ std::string primary_outcome(const store::OutcomeColumns& columns) {
 
 Result<StudyReport> study_report(store::StudyList list, store::OutcomeColumns columns,
                                  statistics::StudyStatistics statistics, std::optional<std::int64_t> participant,
-                                 const std::string& outcome) {
+                                 const std::string& outcome, StretchExtents extents) {
   StudyReport report;
   const auto is_theirs = [&](const store::ListedRecording& one) { return one.recording.participant == *participant; };
   if (participant && std::ranges::none_of(list.recordings, is_theirs)) {
@@ -391,7 +404,8 @@ Result<StudyReport> study_report(store::StudyList list, store::OutcomeColumns co
     return bad_usage(fmt::format("there is no outcome '{}'", outcome),
                      "'mbk study summary' shows the outcomes; example: --outcome K_xx");
   }
-  report.courses = courses(columns, statistics, participant);
+  report.courses = courses(columns, statistics, participant, extents);
+  report.extents = std::move(extents);
   report.list = std::move(list);
   report.columns = std::move(columns);
   report.statistics = std::move(statistics);
@@ -415,10 +429,10 @@ Result<ParticipantComparison> compare_participant(const store::Store& study, con
                        "'mbk study list' shows the participants; example: --group controls=21-30");
     }
     made.controls = {controls->name, static_cast<int>(people.size()), belongs(participant)};
-    made.ranges = outcome_ranges(report.columns, participant, people);
+    made.ranges = outcome_ranges(report.columns, participant, people, report.extents);
   }
   made.stretches = MBK_TRY(stretch_curves(study, report.list, participant, people));
-  made.sides = side_differences(report.columns, participant, people);
+  made.sides = side_differences(report.columns, participant, people, report.extents);
   return made;
 }
 

@@ -38,6 +38,7 @@ struct StudyReport {
   std::vector<OutcomeCourses> courses;
   std::string primary;               ///< the outcome that is shown first
   ParticipantComparison comparison;  ///< of one participant
+  StretchExtents extents;            ///< of all results of stretches
 };
 
 /// The outcome that a page shows first unless it is asked for another: the largest stiffness [N/m], or else that of
@@ -45,10 +46,12 @@ struct StudyReport {
 [[nodiscard]] std::string primary_outcome(const store::OutcomeColumns& columns);
 
 /// The list of courses, for one person that of them alone.
+/// @param statistics  as courses() takes them
 /// @fails  usage: there is no such outcome; the participant has no recording.
 [[nodiscard]] Result<StudyReport> study_report(store::StudyList list, store::OutcomeColumns columns,
                                                statistics::StudyStatistics statistics,
-                                               std::optional<std::int64_t> participant, const std::string& outcome);
+                                               std::optional<std::int64_t> participant, const std::string& outcome,
+                                               StretchExtents extents = {});
 
 /// Compares a participant with the controls, if they are given, and left with right.
 /// @fails  usage: nobody else of the controls has a usable result. data: a result cannot be read.

@@ -103,7 +103,8 @@ function stretchFigure(all: StretchCurves[], compared: boolean): HTMLElement {
 /** "0.10 to 0.14 (8)" */
 function rangeCell(normal: NormalRange, without = 0): HTMLElement | string {
   const [low, high] = [normal.range95[0] ?? null, normal.range95[1] ?? null];
-  const people = without > 0 ? `${normal.controls} of ${normal.controls + without}` : String(normal.controls);
+  const left = without + normal.not_comparable;
+  const people = left > 0 ? `${normal.controls} of ${normal.controls + left}` : String(normal.controls);
   if (low === null || high === null) return normal.controls < fewest ? `not known: ${people} controls; ${fewest} are needed` : "not known: the controls do not vary";
   const size = high - low;
   return h("span", { class: "number" }, data(low, among(low, size), "range-low"), " to ", data(high, among(high, size), "range-high"), h("span", { class: "half" }, ` (${people})`));
@@ -115,6 +116,9 @@ const rangeWords: Record<OutcomeRange["verdict"], { text: string; kind: string }
   below: { text: "below the range", kind: "care-text" },
   unknown: { text: "not known", kind: "" },
 };
+
+const rangeResult = (verdict: OutcomeRange["verdict"], why?: string): HTMLElement =>
+  h("span", { class: rangeWords[verdict].kind }, why ? `not comparable: ${why}` : rangeWords[verdict].text);
 
 const labelled = ({ outcome, unit }: { outcome: string; unit: string }): string => (unit ? `${outcomeName(outcome)} [${unit}]` : outcomeName(outcome));
 
@@ -129,7 +133,7 @@ function rangeTables(ranges: OutcomeRange[]): HTMLElement[] {
     if (!first) return [];
     const name = ofCondition(condition, conditions);
     return [table(`${name ? `${name}: ` : ""}session ${first.session} beside the range of the controls (in parentheses: how many)`, ["outcome", "this participant", "range of the controls", "result"],
-      all.map((one) => [labelled(one), data(one.value, among(one.value, width(one.normal) ?? one.value), "value"), rangeCell(one.normal, one.without), h("span", { class: rangeWords[one.verdict].kind }, rangeWords[one.verdict].text)]), "changes ranges")];
+      all.map((one) => [labelled(one), data(one.value, among(one.value, width(one.normal) ?? one.value), "value"), rangeCell(one.normal, one.without), rangeResult(one.verdict, one.why_not_comparable)]), "changes ranges")];
   });
 }
 
@@ -149,6 +153,7 @@ export function controlsSection({ controls, stretches, ranges }: ParticipantRepo
 }
 
 function sideError(one: SideDifference): HTMLElement | string {
+  if (one.why_not_comparable) return "–";
   if (one.error95 === null) return "not known";
   const [low, high] = [one.error95_interval[0] ?? null, one.error95_interval[1] ?? null];
   return h("span", { class: "number" }, data(one.error95, plainly(one.error95), "error"),
@@ -178,8 +183,8 @@ export function sidesSection({ sides, controls }: ParticipantReport): HTMLElemen
       inOutcomeOrder(all, ({ outcome }) => outcome).map((one) => {
         const size = Math.max(Math.abs(one.difference ?? 0), one.error95 ?? 0);
         return [labelled(one), data(one.left, among(one.left, size)), data(one.right, among(one.right, size)), data(one.difference, signed(one.difference, size), "side-difference"), sideError(one),
-          h("span", { class: one.verdict === "beyond-error" ? "care-text" : "" }, sideWords[one.verdict]),
-          ...(controls ? [rangeCell(one.normal), h("span", { class: rangeWords[one.range_verdict].kind }, rangeWords[one.range_verdict].text)] : [])];
+          h("span", { class: one.verdict === "beyond-error" ? "care-text" : "" }, one.why_not_comparable ? `not comparable: ${one.why_not_comparable}` : sideWords[one.verdict]),
+          ...(controls ? (one.why_not_comparable ? ["–", "–"] : [rangeCell(one.normal), rangeResult(one.range_verdict, one.why_no_comparable_range)]) : [])];
       }), "changes sides")),
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "The error is from how left − right varies between sessions of other people of the study; brackets are its 95 % interval. ",
       ...[...whys].map((why) => `That is not known (${why}); “recordings only” is the error of these recordings without the variation between sessions, so nothing is claimed. `),

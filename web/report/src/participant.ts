@@ -53,6 +53,7 @@ function latestText(change: SessionChange, one: OutcomeCourses): string {
   const words: Record<SessionChange["verdict"], string> = {
     "beyond-error": "more than measurement error explains", uncertain: "more than the minimal detectable change, which is itself uncertain",
     "within-error": "no detectable change", unknown: "whether that is more than measurement error is not known" };
+  if (change.why_not_comparable) return `Session ${change.first_session}, the one before, is not comparable: ${change.why_not_comparable}.`;
   return `Since session ${change.first_session}, the one before: ${withUnit(moved(change), one.unit)}; ${words[change.verdict]}${change.mdc95 === null ? "" : ` (minimal detectable change ${withUnit(plainly(change.mdc95), one.unit)})`}.`;
 }
 
@@ -90,7 +91,9 @@ function statement(one: OutcomeCourses, courses: OutcomeCourses[], conditions: s
     "within-error": [
       `Between session ${change.first_session} and session ${change.last_session} there is no detectable change in the ${name}.`,
       `The difference does not exceed the minimal detectable change of ${mdc} (95 % interval ${low} to ${high}), so it may be measurement error. This does not prove that nothing changed.`],
-    unknown: [
+    unknown: change.why_not_comparable ? [
+      `The ${name} of session ${change.last_session} is not comparable with that of session ${change.first_session}.`,
+      `The stretches differ: ${change.why_not_comparable}.`] : [
       same ? `In session ${change.last_session} the ${name} is the same as in session ${change.first_session}.`
         : `In session ${change.last_session} the ${name} ${movement}. Whether that is more than measurement error is not known.`,
       `The minimal detectable change is not known: ${one.why_unknown ?? "the difference is undefined"}.`],
@@ -128,7 +131,7 @@ function changesTable(courses: OutcomeCourses[], condition: string, conditions: 
       return [[one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome), data(change.first, first), data(change.last, last),
         h("span", { class: "number" }, data(change.difference, moved(change)), h("span", { class: "half" }, percentOf(change, one) ? ` (${percentOf(change, one)})` : "")),
         change.mdc95 === null ? "not known" : h("span", { class: "number" }, data(change.mdc95, plainly(change.mdc95)), h("span", { class: "half" }, ` [${among(change.mdc95_interval[0] ?? null, change.mdc95)}, ${among(change.mdc95_interval[1] ?? null, change.mdc95)}]`)),
-        h("span", { class: said.kind }, said.text)]];
+        h("span", { class: said.kind }, change.why_not_comparable ? `not comparable: ${change.why_not_comparable}` : said.text)]];
     });
   if (rows.length === 0) return undefined;
   const change = courses.filter((one) => one.condition === condition).map(lastOf).find((one) => one !== undefined) as SessionChange;
@@ -144,7 +147,8 @@ function limits(report: ParticipantReport, shown: number): HTMLElement {
       h("li", {}, "“No detectable change” does not mean that nothing changed: a change below the minimal detectable change cannot be seen."),
       ...(report.controls || report.stretches.length > 0 ? [
         h("li", {}, "Being outside the range of the controls is not a disorder, and being inside it excludes none. The range assumes normally distributed values; it applies to people like these controls, with this apparatus and procedure. Of many values, some are outside by chance."),
-        h("li", {}, "Resistance to a stretch does not show its cause: a reflex, voluntary contraction and stiff tissue can look alike. It is not a clinical score such as the Modified Ashworth Scale.")] : []),
+        h("li", {}, "Resistance to a stretch does not show its cause: a reflex, voluntary contraction and stiff tissue can look alike. It is not a clinical score such as the Modified Ashworth Scale."),
+        h("li", {}, "Resistance, work and catch at the fastest speed are compared with results whose fastest speed differs by at most 10 % and whose positions are the same by at least 80 %; slope, rise and threshold with results over the same positions at any speeds. The minimal detectable change is from results that are comparable with the last session.")] : []),
       shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page shows ${shown}; a single one that stands out is not significant.`) : "",
       known.length > 0
         ? h("li", {}, `The minimal detectable change is from this study: from ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more with this apparatus. An outlying participant is judged by the variances of all others. If most people really changed, it is too large; it does not apply to other people or another apparatus.`)

@@ -183,7 +183,7 @@ function coursesSection({ courses, primary }: StudyReport, conditions: string[])
         const size = change ? percentOf(change, one) || withUnit(signed(change.difference), one.unit) : "";
         return h("div", { class: "small-panel", "data-participant": course.participant, "data-verdict": change?.verdict },
           h("p", { class: "panel-name" }, `participant ${course.participant}`), coursePanel(one, course, range_, all, "small"),
-          h("p", { class: "panel-note" }, change ? `${size} since session ${change.first_session}${change.verdict === "beyond-error" ? ": more than error" : change.verdict === "uncertain" ? ": uncertain" : ""}` : ""));
+          h("p", { class: "panel-note" }, change ? `${size} since session ${change.first_session}${change.verdict === "beyond-error" ? ": more than error" : change.verdict === "uncertain" ? ": uncertain" : change.why_not_comparable ? `: not comparable (${change.why_not_comparable})` : ""}` : ""));
       })),
       alone > 0 ? h("p", { class: "reading" }, `${counted(alone, "participant has", "participants have")} only one session and ${alone === 1 ? "is" : "are"} not drawn.`) : "",
       one.why_unknown ? h("p", { class: "reading", "data-name": "mdc-unknown" }, `The minimal detectable change is not known: ${one.why_unknown}. No difference here can be distinguished from measurement error.`) : "");
