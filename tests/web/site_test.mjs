@@ -67,7 +67,7 @@ test("the button's choice of dark holds on pages that other programs made", asyn
 });
 
 test("the recording plays by keyboard, and is text for those who asked for less motion", async () => {
-  const { page, said, close } = await open(address("index"));
+  const { page, said, close } = await open(address("index"), { reducedMotion: "no-preference" });
   const terminal = page.locator(".terminal .ap-wrapper");
   await terminal.focus();
   await page.keyboard.press("Space");
