@@ -245,8 +245,9 @@ class EmgFit {
     std::vector<Matrix> pieces;
     for (const RowRange& piece : s_.pieces) {
       const auto rows = Eigen::seqN(piece.begin, piece.size());
-      pieces.push_back(
-          beside(beside(s_.position(rows, Eigen::all), s_.muscles(rows, Eigen::all)), s_.resistance(rows, Eigen::all)));
+      const Matrix all =
+          beside(beside(s_.position(rows, Eigen::all), s_.muscles(rows, Eigen::all)), s_.resistance(rows, Eigen::all));
+      pieces.push_back(without_drift(all, {piece}, {piece}, kSlowestOfBand, s_.sample_time));
     }
     const Index segment = 2 * static_cast<Index>(std::llround(0.5 * kCoherenceSegment / s_.sample_time));
     const auto spectra = dsp::cross_spectra(pieces, Hertz(1.0 / s_.sample_time), segment);

@@ -217,7 +217,12 @@ Result<TimeCourseEstimate> time_course(const LimbSignals& signals, const CourseV
   found.bic_gain = std::min(chosen.bic_constant, chosen.bic_last) - chosen.bic;
   const Vector places = Vector::LinSpaced(kPoints, 0.0, 1.0);
   if (functions == 1) {
-    found.why = "BIC prefers a constant model";
+    found.why = chosen.bic_refused < chosen.bic_constant
+                    ? fmt::format(
+                          "BIC prefers a change, but the limb was moved too little or too briefly at some values "
+                          "of {} to estimate it; the values are averages",
+                          variable.name)
+                    : "BIC prefers a constant model";
     found.bic_gain = 0.0;
   } else if (!(found.bic_gain > 0.0)) {
     found.why = "BIC prefers a constant model with drifting force";

@@ -275,7 +275,11 @@ class Chooser {
 
  private:
   void take(VaryingModel model, double bic, ChosenSplines& chosen) const {
-    if (!(bic < chosen.bic) || !excitation_.tells(in_finer_splines(model.basis, fine_))) return;
+    if (!(bic < chosen.bic)) return;
+    if (!excitation_.tells(in_finer_splines(model.basis, fine_))) {
+      chosen.bic_refused = std::min(chosen.bic_refused, bic);
+      return;
+    }
     chosen.bic = bic;
     chosen.model = std::move(model);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
@@ -38,6 +39,7 @@ struct ChosenSplines {
   double bic = 0;           ///< Σ_outputs N log(RSS/N) + parameters · log N, of whitened rows
   double bic_constant = 0;  ///< where no coefficient varies
   double bic_last = 0;      ///< the least where only that of the last column does
+  double bic_refused = std::numeric_limits<double>::infinity();  ///< the least of bases that the motion does not tell
 };
 
 /// The splines of degree 1 or 3 of least BIC. Rows are whitened by the noise first, so that each counts as one sample.
