@@ -72,18 +72,6 @@ Matrix without_drift(const Matrix& of, const std::vector<RowRange>& ranges, cons
   return left;
 }
 
-/// Lags of each signal, summed over groups of `wide`.
-Matrix summed_lags(const Matrix& lags, Index signals, Index wide) {
-  const Index count = lags.cols() / signals, groups = count / wide;
-  Matrix sums(lags.rows(), signals * groups);
-  for (Index k = 0; k < signals; ++k) {
-    for (Index g = 0; g < groups; ++g) {
-      sums.col(k * groups + g) = lags.middleCols(k * count + g * wide, wide).rowwise().sum();
-    }
-  }
-  return sums;
-}
-
 /// Paths with EMG, as fitted to the rows that identify.
 struct WithEmg {
   Index kept = 0;  ///< directions of the EMG
@@ -143,13 +131,11 @@ class EmgFit {
   void decide(const PathColumns& others, EmgPath& found) const {
     const Index base = others.explained.cols();
     const auto wide = std::max<Index>(1, std::llround(kSummedEmg / s_.sample_time));
-    found.p_value = chance_of_no_part(beside(others.explained, summed_lags(lags_, muscles(), wide)), base, Y_, rows_);
+    found.p_value = chance_of_no_part(beside(others.explained, summed_lags(lags_, memory_ + 1, wide)), base, Y_, rows_);
     const Matrix errors = cross_validated_errors(beside(others.explained, emg_), Y_, base, kEmgFolds);
     Index best = 0;
     errors.colwise().mean().minCoeff(&best);
-    const Vector gain = errors.col(0) - errors.col(best);
-    const bool better = gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
-    found.explains = better && found.p_value < kChanceOfEmg;
+    found.explains = predicts_better(errors.col(best), errors.col(0)) && found.p_value < kChanceOfEmg;
     if (found.explains && follows(others)) {
       found.explains = false;
       found.why =
@@ -157,12 +143,10 @@ class EmgFit {
           "force and does not cause it, or its clock is wrong";
       return;
     }
-    const char* const chance = found.p_value < 1e-12 ? "p < 1e-12" : "p = ";
     found.why = fmt::format(
-        "with EMG the paths predict {:.2f} % of the force, without it {:.2f} % (cross-validated); "
-        "{}{} for EMG that adds nothing",
-        100.0 * (1.0 - errors.col(best).mean()), 100.0 * (1.0 - errors.col(0).mean()), chance,
-        found.p_value < 1e-12 ? "" : fmt::format("{:.1g}", found.p_value));
+        "with EMG the paths predict {:.2f} % of the force, without it {:.2f} % (cross-validated); {} for EMG that adds "
+        "nothing",
+        100.0 * (1.0 - errors.col(best).mean()), 100.0 * (1.0 - errors.col(0).mean()), chance_text(found.p_value));
   }
 
   /// Whether the EMG after the force predicts it better than that before, by two standard errors.
@@ -188,8 +172,7 @@ class EmgFit {
       all.colwise().mean().minCoeff(&best);
       return Vector(all.col(best));
     };
-    const Vector gain = errors(0, memory_) - errors(-memory_, 0);
-    return gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
+    return predicts_better(errors(-memory_, 0), errors(0, memory_));
   }
 
   /// The other paths and as many directions of the EMG as predict best, at least one.

@@ -1,5 +1,7 @@
 #include "mbk/measure/explore/lagged_regression.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -340,6 +342,26 @@ Matrix whitened(const Matrix& columns, const Vector& filter, const std::vector<R
     row += size;
   }
   return result;
+}
+
+Matrix summed_lags(const Matrix& lagged, Index lags, Index wide) {
+  const Index signals = lagged.cols() / lags, groups = lags / wide;
+  Matrix sums(lagged.rows(), signals * groups);
+  for (Index k = 0; k < signals; ++k) {
+    for (Index g = 0; g < groups; ++g) {
+      sums.col(k * groups + g) = lagged.middleCols(k * lags + g * wide, wide).rowwise().sum();
+    }
+  }
+  return sums;
+}
+
+bool predicts_better(const Vector& errors, const Vector& others) {
+  const Vector gain = others - errors;
+  return gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
+}
+
+std::string chance_text(double p) {
+  return p < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.1g}", p);
 }
 
 Vector nested_squares(const Matrix& Z, const Vector& y) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
@@ -99,6 +100,16 @@ struct LaggedFit {
 /// e_t + c₁ e_{t−1} + … of every column; the first rows of each range are lost.
 /// @param columns rows of `ranges` under each other
 [[nodiscard]] Matrix whitened(const Matrix& columns, const Vector& filter, const std::vector<RowRange>& ranges);
+
+/// Lags of each signal summed over groups of `wide`; lags left over at the end are dropped.
+/// @param lagged  rows×(m·lags), as lagged() gives them    @returns rows×(m·⌊lags/wide⌋)
+[[nodiscard]] Matrix summed_lags(const Matrix& lagged, Index lags, Index wide);
+
+/// Whether errors are less than other ones, fold by fold, by two standard errors of their difference.
+[[nodiscard]] bool predicts_better(const Vector& errors, const Vector& others);
+
+/// "p = 0.03", "p < 1e-12".
+[[nodiscard]] std::string chance_text(double p);
 
 /// Residual sums of squares of y by the first r columns of Z, r = 0 … p.
 /// @param Z N×p    @param y N    @returns p + 1

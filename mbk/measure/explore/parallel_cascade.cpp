@@ -33,11 +33,6 @@ constexpr int kMaxSwaps = 8;
 constexpr double kSwapTolerance = 0.05;  ///< [% VAF]
 constexpr Index kDirections = 8;         ///< in a plane
 
-/// "p = 0.03", "p < 1e-12".
-std::string p_text(double p) {
-  return p < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.1g}", p);
-}
-
 /// A signal, and what the reference explains of it (the same, where there is none).
 struct Both {
   Matrix measured, explained;
@@ -197,17 +192,9 @@ class Cascade {
 
   /// p of |eᵀẋ| adding nothing to a delayed response that is linear.
   [[nodiscard]] double p_of_rectification() const {
-    const auto grouped = [&](const Both& signal) {  // a few lags as one
-      const Matrix lags = columns(signal, first_, last_).explained;
-      const Index m = lags.cols() / (last_ - first_ + 1), count = last_ - first_ + 1;
-      const Index wide = std::max<Index>(1, std::llround(kTestedLags / T_)), groups = count / wide;
-      Matrix sums(lags.rows(), m * groups);
-      for (Index k = 0; k < m; ++k) {
-        for (Index g = 0; g < groups; ++g) {
-          sums.col(k * groups + g) = lags.middleCols(k * count + g * wide, wide).rowwise().sum();
-        }
-      }
-      return sums;
+    const auto grouped = [&](const Both& signal) {
+      return summed_lags(columns(signal, first_, last_).explained, last_ - first_ + 1,
+                         std::max<Index>(1, std::llround(kTestedLags / T_)));
     };
     const Both v = along(direction_);
     const Matrix linear = grouped(velocity());
@@ -222,19 +209,15 @@ class Cascade {
 
   void decide() {
     result_.p_value = p_of_rectification();
-    const auto better = [](const Vector& a, const Vector& b) {  // by two standard errors over the folds
-      const Vector gain = b - a;
-      return gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
-    };
     const double none = none_.mean(), one = one_way_.mean(), both = both_ways_.mean();
-    const bool rectified_helps = better(one_way_, none_) && one < both && result_.p_value < kChanceOfReflex;
-    const bool one_sided = better(one_way_, to_and_fro_) && one < (1.0 - kOneSided) * to_and_fro_.mean();
+    const bool rectified_helps = predicts_better(one_way_, none_) && one < both && result_.p_value < kChanceOfReflex;
+    const bool one_sided = predicts_better(one_way_, to_and_fro_) && one < (1.0 - kOneSided) * to_and_fro_.mean();
     if (rectified_helps && one_sided) {
       result_.found = DelayedResponse::reflex;
       result_.why = fmt::format(
           "stretch in one direction predicts {:.2f} % of the force, in both directions {:.2f} %, without a delayed "
           "response {:.2f} % (cross-validated); {} for equal responses in both directions",
-          100.0 * (1.0 - one), 100.0 * (1.0 - both), 100.0 * (1.0 - none), p_text(result_.p_value));
+          100.0 * (1.0 - one), 100.0 * (1.0 - both), 100.0 * (1.0 - none), chance_text(result_.p_value));
     } else if (rectified_helps) {
       result_.found = DelayedResponse::none;
       result_.why = fmt::format(
@@ -242,18 +225,18 @@ class Cascade {
           "response {:.2f} % (cross-validated): the force is nearly the same in both directions, which indicates a "
           "nonlinear limb or posture, whereas a reflex responds to one direction only",
           100.0 * (1.0 - one), 100.0 * (1.0 - to_and_fro_.mean()), 100.0 * (1.0 - none));
-    } else if (both < none && better(both_ways_, none_)) {
+    } else if (both < none && predicts_better(both_ways_, none_)) {
       result_.found = DelayedResponse::both_directions;
       result_.why = fmt::format(
           "a delayed response to motion in both directions predicts {:.2f} % of the force, to one direction only "
           "{:.2f} %, without it {:.2f} % (cross-validated); {} for equal responses in both directions",
-          100.0 * (1.0 - both), 100.0 * (1.0 - one), 100.0 * (1.0 - none), p_text(result_.p_value));
+          100.0 * (1.0 - both), 100.0 * (1.0 - one), 100.0 * (1.0 - none), chance_text(result_.p_value));
     } else {
       result_.found = DelayedResponse::none;
       result_.why = fmt::format(
           "a delayed response to stretch does not predict the force better than the limb alone ({:.2f} against {:.2f} "
           "%, cross-validated), or {} for equal responses in both directions is too large",
-          100.0 * (1.0 - std::min(one, both)), 100.0 * (1.0 - none), p_text(result_.p_value));
+          100.0 * (1.0 - std::min(one, both)), 100.0 * (1.0 - none), chance_text(result_.p_value));
     }
   }
 
