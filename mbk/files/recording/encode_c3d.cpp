@@ -294,7 +294,7 @@ std::string c3d_parameters(const Recording& recording, const C3dClock& clock, st
 
 std::string c3d_header(const C3dClock& clock, std::size_t points, std::size_t channels, Index frames,
                        std::size_t data_block) {
-  constexpr std::size_t kFourLetterEvents = 12345;  // the key of events in the header, of which there are none
+  constexpr std::size_t kFourLetterEvents = 12345;  // the key of events in the header, which has none
   std::string header = "\x02\x50" + c3d_word(points) + c3d_word(channels) + c3d_word(1);
   header += c3d_word(static_cast<std::size_t>(std::min(static_cast<double>(frames), kMaxC3dWord))) + c3d_word(0);
   header += c3d_real(-1.0) + c3d_word(data_block) + c3d_word(1) + c3d_real(clock.rate_hz);

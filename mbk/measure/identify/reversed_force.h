@@ -4,7 +4,7 @@
 
 namespace mbk::identify {
 
-/// What is said where M, B and K are all negative.
+/// The warning that M, B and K are all negative.
 [[nodiscard]] inline Warning reversed_force(int axes) {
   return {WarningCode::force_sign_reversed,
           "inertia, damping and stiffness are all negative: the force was probably recorded with the opposite sign",

@@ -70,8 +70,7 @@ Result<void> check_amplitudes(std::span<ExplorationTrial> trials, Index column, 
   if (high > kOtherGain * low) {
     trials.front().notes.push_back(
         fmt::format("the mean of {} is {:.3g} times larger in one recording than in another; check that the gain of "
-                    "the amplifier was "
-                    "the same",
+                    "the amplifier was the same",
                     name, high / low));
   }
   return {};
@@ -86,8 +85,7 @@ void note_drift(ExplorationTrial& trial) {
   if (!(std::abs(correlation) > kDrifts)) return;
   trial.notes.push_back(
       fmt::format("{} changes with time (correlation {:.2f}), so that a limb that changes for another reason, and "
-                  "fatigue, look the "
-                  "same",
+                  "fatigue, look the same",
                   trial.scheduling_label.name, correlation));
 }
 
@@ -139,8 +137,12 @@ Result<void> scale_muscles(std::span<ExplorationTrial> trials, const std::map<st
   }
   const auto muscle = std::ranges::find(names, schedule);
   if (!both && muscle == names.end()) return {};
+  const std::vector<std::string>& units = trials.front().muscle_units;
+  if (both && units[0] != units[1]) {
+    return bad_usage("--mvc is given for one of the two muscles only", "give it for both, or for none");
+  }
   for (ExplorationTrial& trial : trials) {
-    auto how = MBK_TRY(explore::emg_processing_at(Hertz(1.0 / trial.sample_time), processing));
+    const auto how = MBK_TRY(explore::emg_processing_at(Hertz(1.0 / trial.sample_time), processing));
     Vector least;
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (!both && names[k] != schedule) continue;
@@ -148,10 +150,6 @@ Result<void> scale_muscles(std::span<ExplorationTrial> trials, const std::map<st
       least = least.size() > 0 ? Vector(least.cwiseMin(envelope)) : envelope;
     }
     trial.scheduling = least.cwiseMax(0.0);  // a low-pass may swing below
-    const bool same = !both || trial.muscle_units[0] == trial.muscle_units[1];
-    if (!same) {
-      return bad_usage("--mvc is given for one of the two muscles only", "give it for both, or for none");
-    }
     trial.scheduling_label = {both ? fmt::format("co-contraction of {} and {}", names[0], names[1]) : schedule,
                               trial.muscle_units[both ? 0 : static_cast<std::size_t>(muscle - names.begin())]};
     note_drift(trial);

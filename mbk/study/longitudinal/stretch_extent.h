@@ -27,8 +27,7 @@ struct StretchExtent {
 /// Extents of the results of a study, which say whether two of its numbers may be compared:
 ///   - `torque` and `work` are of the fastest speed and are taken over the analysed positions; `catch` moves to smaller
 ///     angles at higher speeds (λ* = λ − μ θ̇) and is not found beyond the positions. All three depend on both.
-///   - `slope` and `rise` are regressions over all speeds, so that the fastest speed of a linear resistance cancels,
-///   and
+///   - `slope` and `rise` are regressions over all speeds, so that the fastest speed of a linear resistance cancels;
 ///     `threshold` is extrapolated to speed 0. They depend on the positions alone: elasticity and reflex differ along
 ///     them, and a threshold beyond them is not found.
 ///   - Other outcomes depend on neither.
