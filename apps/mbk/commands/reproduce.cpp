@@ -13,6 +13,7 @@
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/threads_option.h"
+#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/terminal/progress.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/write_file.h"
@@ -44,7 +45,10 @@ std::string list_of_exhibits() {
 /// The id of an erratum for its former name "slip-4", which is accepted for one version; any other id unchanged.
 std::string current_id(const std::string& id) {
   constexpr std::string_view kBefore = "slip-";
-  return id.starts_with(kBefore) ? "erratum-" + id.substr(kBefore.size()) : id;
+  if (!id.starts_with(kBefore)) return id;
+  const std::string now = "erratum-" + id.substr(kBefore.size());
+  say("warning: {} is now {}; the former name goes with mbk 1.2\n", id, now);
+  return now;
 }
 
 /// The exhibit's id, with a number where it has several tables: "table-3.6", "table-5.4-2".

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/terminal/usage_error.h"
 
 namespace mbk::app {
@@ -177,7 +178,8 @@ void Command::accept_former_name(Option option, const std::string& former) const
   CLI::Option& now = option.cli();
   add_option_function(
       former,
-      [&now](const std::vector<std::string>& given) {
+      [&now, former](const std::vector<std::string>& given) {
+        say("warning: {} is now {}; the former name goes with mbk 1.2\n", former, now.get_name());
         for (const std::string& value : given) now.add_result(value);
         now.run_callback();
       },

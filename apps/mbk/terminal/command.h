@@ -79,7 +79,7 @@ class Command {
   Option add_flag_callback(const std::string& name, std::function<void()> given, const std::string& help) const;
   /// A flag that prints a text instead of running the command.
   Option add_text_flag(const std::string& name, std::function<std::string()> text, const std::string& help) const;
-  /// The former name of `option`: still read, but not listed.
+  /// The former name of `option`: still read, with a warning, but not listed.
   void accept_former_name(Option option, const std::string& former) const;
   void remove_option(const std::string& name) const;
 
