@@ -1,10 +1,7 @@
-# mbk-VERSION-windows-x86_64.zip: the program, its schemas, documents and licences.
-install(TARGETS mbk RUNTIME DESTINATION .)
-install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright DESTINATION .)
-install(DIRECTORY docs examples DESTINATION . PATTERN docs/site EXCLUDE)
-set(CPACK_GENERATOR ZIP)
-set(CPACK_PACKAGE_NAME mbk)
-set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_PACKAGE_FILE_NAME mbk-${PROJECT_VERSION}-windows-x86_64)
-set(CPACK_STRIP_FILES ON)
-include(CPack)
+# What tools/windows packs: program, library, documents and licences.
+install(TARGETS mbk RUNTIME DESTINATION . COMPONENT program)
+install(FILES README.md LICENSE CITATION.cff CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright DESTINATION .
+        COMPONENT program)
+install(DIRECTORY docs examples DESTINATION . COMPONENT program PATTERN docs/site EXCLUDE)
+install(DIRECTORY ${MBK_STATIC}/licences DESTINATION . COMPONENT program)
+install(FILES ${MBK_STATIC}/sources.tsv DESTINATION licences COMPONENT program)

@@ -24,7 +24,7 @@ step() {
   shift
   log=build/log/${what// /_}.log
   mkdir -p build/log
-  printf '%-36s' "$what"
+  printf '%-36s ' "$what"
   start=$(microseconds)
   # In a shell of its own, where the first command of a function that fails ends it; behind || none would.
   set +e

@@ -40,7 +40,9 @@ extern "C" {
 
 #define MBK_API_VERSION 2
 
-#if defined(__GNUC__)
+#if defined(_WIN32) && defined(MBK_BUILDS_LIBRARY)
+#define MBK_API __declspec(dllexport)
+#elif defined(__GNUC__) && !defined(_WIN32)
 #define MBK_API __attribute__((visibility("default")))
 #else
 #define MBK_API

@@ -4,7 +4,7 @@
 options in the environment variable CMAKE_ARGS. If MBK_BUILD names a build folder of this tree, that is used without
 building. The wheel has the package, its library, the program with its manual pages, and serves every Python. If library and
 program need nothing but the C library (CMAKE_ARGS=-DMBK_STATIC=FOLDER), its tag says from which version on; otherwise it is
-for the machine that it was built on.
+for the machine that it was built on. If MBK_WINDOWS names a folder with mbk.exe and mbk.dll, the wheel has these (tools/windows).
 """
 
 import base64
@@ -23,6 +23,7 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OF_C = re.compile(r"^(ld-linux.*|lib(c|m|dl|rt|pthread|gcc_s))\.so")  # what every Linux has
+WINDOWS = os.environ.get("MBK_WINDOWS")
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the same tree gives the same wheel
 
 
@@ -47,6 +48,8 @@ def objdump(option, binary):
 
 def tag(binaries):
     """Tag of a wheel with these binaries."""
+    if WINDOWS:
+        return "py3-none-win_amd64"
     platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
     found = [needed(one) for one in binaries]
     if all(OF_C.match(link) for links, _ in found for link in links):
@@ -92,16 +95,22 @@ def staged(build, folder):
         run("cmake", "--install", build, "--component", component, "--strip", "--prefix", folder)
     package = next(folder.rglob("mbk/__init__.py")).parent
     files = {f"mbk/{one.relative_to(package).as_posix()}": one for one in package.rglob("*")}
-    files["mbk/libmbk.so.1"] = next(one for one in folder.rglob("libmbk.so.1") if one.exists())
-    # The program stands with the commands of Python, its pages where `man` looks beside these. The robot that misbehaves
-    # (`mbk validate faults --link udp`) is 10 MB that few would miss.
-    files[f"mbk-{version()}.data/scripts/mbk"] = folder / "bin/mbk"
-    files |= {f"mbk-{version()}.data/data/share/man/man1/{one.name}": one for one in folder.glob("share/man/man1/mbk[-.]*")}
+    scripts = f"mbk-{version()}.data/scripts"  # with the commands of Python
+    if WINDOWS:
+        files.pop("mbk/libmbk.so.1", None)
+        files["mbk/mbk.dll"] = pathlib.Path(WINDOWS, "mbk.dll")
+        files[f"{scripts}/mbk.exe"] = pathlib.Path(WINDOWS, "mbk.exe")
+    else:
+        files["mbk/libmbk.so.1"] = next(one for one in folder.rglob("libmbk.so.1") if one.exists())
+        # `man` looks for pages beside the commands. The robot that misbehaves (`mbk validate faults --link udp`) is 10 MB
+        # that few would miss.
+        files[f"{scripts}/mbk"] = folder / "bin/mbk"
+        files |= {f"mbk-{version()}.data/data/share/man/man1/{one.name}": one for one in folder.glob("share/man/man1/mbk[-.]*")}
     return {path: file for path, file in files.items() if file.is_file() and "__pycache__" not in file.parts}
 
 
 def binaries(files):
-    return [file for path, file in files.items() if path == "mbk/libmbk.so.1" or ".data/scripts/" in path]
+    return [file for path, file in files.items() if path in ("mbk/libmbk.so.1", "mbk/mbk.dll") or ".data/scripts/" in path]
 
 
 # ---- hooks for pip

@@ -17,7 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-_LIBRARY = "libmbk.so.1"
+_LIBRARY = "mbk.dll" if os.name == "nt" else "libmbk.so.1"
 _VERSION = 2  # of the interface: MBK_API_VERSION
 _FOR_PYTHON = 2
 _STOPPED = 130
