@@ -222,6 +222,14 @@ class Files(Case):
         self.assert_same_documents("measure", "log*.csv", "--json")
 
 
+class Library(Case):
+    def test_is_called_from_c(self):
+        program = pathlib.Path(WINDOWS).resolve().parents[1] / "tests/mbk_c_test.exe"
+        beside = "Z:" + str(pathlib.Path(WINDOWS).resolve().parent).replace("/", "\\")  # where mbk.dll is
+        ran = self.run_program([WINE, program], {**self.environment, "WINEPATH": beside}, None)
+        self.assertEqual(ran.code, 0, ran)
+
+
 class Places(Case):
     def test_with_a_decimal_comma_change_no_number(self):
         file = self.simulated()

@@ -7,7 +7,7 @@ namespace mbk::journal {
 namespace {
 
 tl::unexpected<Error> no_recording(const std::filesystem::path& file) {
-  return bad_usage("on Windows mbk records nothing", "record on Linux", file.string());
+  return fail(ErrorKind::usage, "on Windows mbk records nothing", "record on Linux", file.string());
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ Result<Writer> Writer::create(const std::filesystem::path& file, const Header& /
 }
 
 Error Writer::already_there(const std::filesystem::path& file) {
-  return no_recording(file).error();
+  return no_recording(file).value();
 }
 
 Result<void> Writer::append(std::span<const Tick> /*ticks*/) {
