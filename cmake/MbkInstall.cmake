@@ -118,7 +118,7 @@ function(mbk_install_development)
   set(folder ${PROJECT_BINARY_DIR}/cmake)
   configure_package_config_file(cmake/mbkConfig.cmake.in ${folder}/mbkConfig.cmake
                                 INSTALL_DESTINATION ${MBK_CMAKE_FOLDER})
-  # Before 1.0 each minor version may change what applications call.
+  # Each minor version may change what applications call: docs/guide/stability.md.
   write_basic_package_version_file(${folder}/mbkConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${folder}/mbkConfig.cmake ${folder}/mbkConfigVersion.cmake DESTINATION ${MBK_CMAKE_FOLDER}
           COMPONENT development)

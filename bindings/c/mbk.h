@@ -65,7 +65,7 @@ typedef struct mbk_error mbk_error;
 
 /* Interface version of the library: at least the MBK_API_VERSION of the header that it was built with. */
 MBK_API int mbk_api_version(void);
-/* Version of mbk: "0.1.0". */
+/* Version of mbk: "1.0.0". */
 MBK_API const char* mbk_version(void);
 
 /* How errors, warnings and messages name options and commands: in the whole process, or in the calls that state a

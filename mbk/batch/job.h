@@ -29,7 +29,7 @@ struct Chunk {
   double expected_s = 0.0;            ///< of one core
 };
 
-/// This program, and which build of it: "0.1.0 4f1c…".
+/// This program, and which build of it: "1.0.0 4f1c…".
 [[nodiscard]] std::string program_identity();
 
 /// What it takes until it is worth while to begin a task.

@@ -1,4 +1,4 @@
 function text = version()
-% mbk.version  The version of mbk: '0.1.0'.
+% mbk.version  The version of mbk: '1.0.0'.
   text = mbk_mex('version');
 end

@@ -4,10 +4,10 @@
 
 namespace mbk {
 
-/// "0.1.0"
+/// "1.0.0"
 [[nodiscard]] std::string_view version();
 
-/// Day of this version's release: "2026-11-29".
+/// Day of this version's release: "2026-11-30".
 [[nodiscard]] std::string_view release_date();
 
 }  // namespace mbk

@@ -413,7 +413,7 @@ class Fields {
   void header(const std::string& schema) {
     constant("schema", schema);
     add(
-        "software", [](const T&) { return software(); }, "program that wrote the document: \"mbk 0.1.0\"");
+        "software", [](const T&) { return software(); }, "program that wrote the document: \"mbk 1.0.0\"");
   }
 
   /// All fields of another described value, in this object.
