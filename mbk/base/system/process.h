@@ -27,6 +27,8 @@ namespace mbk::system {
 /// This process is killed when its parent ends.   @returns  false: the parent has ended
 [[nodiscard]] bool end_with_parent();
 
+[[nodiscard]] std::string signal_name(int number);  ///< "SIGINT"; "" where it has none
+
 void set_environment(const char* name, const std::string& value);
 
 /// The words of the command line behind the program's name, in UTF-8.

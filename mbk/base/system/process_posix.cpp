@@ -113,6 +113,11 @@ bool end_with_parent() {
   return ::getppid() != 1;
 }
 
+std::string signal_name(int number) {
+  const char* const name = sigabbrev_np(number);
+  return name != nullptr ? std::string("SIG") + name : "";
+}
+
 void set_environment(const char* name, const std::string& value) {
   ::setenv(name, value.c_str(), 1);
 }

@@ -74,6 +74,10 @@ bool end_with_parent() {
   return true;  // whoever starts it ends it
 }
 
+std::string signal_name(int /*number*/) {
+  return "";
+}
+
 void set_environment(const char* name, const std::string& value) {
   _putenv_s(name, value.c_str());
 }

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstring>
+
+#include "mbk/base/system/process.h"
 
 namespace mbk::safety {
 namespace {
@@ -88,8 +89,8 @@ std::string sentence(const Trip& trip) {
   const Sentence& w = parts(trip.reason);
   std::string text(w.what);
   if (trip.reason == Reason::operator_stop && trip.value != 0.0) {
-    const char* const name = sigabbrev_np(static_cast<int>(trip.value));
-    text = fmt::format("the signal {} stopped it", name != nullptr ? fmt::format("SIG{}", name) : "that came");
+    const std::string name = system::signal_name(static_cast<int>(trip.value));
+    text = fmt::format("the signal {} stopped it", name.empty() ? "that came" : name);
   }
   if (!w.unit.empty()) text += fmt::format(" {:.4g} {} (limit {:.4g} {})", trip.value, w.unit, trip.limit, w.unit);
   if (trip.reason == Reason::robot_fault) text += fmt::format(" (code {:.0f})", trip.value);
