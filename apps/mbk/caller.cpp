@@ -9,7 +9,7 @@ namespace {
 /// The index of the input that `word` refers to; `count` if there is none.
 std::size_t place_of(const std::filesystem::path& word, std::size_t count, std::string (*word_of)(std::size_t)) {
   std::size_t k = 0;
-  while (k < count && word.native() != word_of(k)) ++k;
+  while (k < count && word.string() != word_of(k)) ++k;
   return k;
 }
 
