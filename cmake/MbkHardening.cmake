@@ -6,6 +6,7 @@ check_pie_supported(LANGUAGES C CXX)
 
 if(WIN32)
   add_compile_options(-fstack-protector-strong)
+  add_link_options(-fstack-protector-strong)  # which links what that calls
 elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   add_compile_options(-fstack-protector-strong -fstack-clash-protection)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <libdeflate.h>
-#include <liblzf/lzf.h>
 
+extern "C" {  // its author's header leaves that to who includes it
+#include <liblzf/lzf.h>
+}
 #include <algorithm>
 #include <cstring>
 #include <iterator>
