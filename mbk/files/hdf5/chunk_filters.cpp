@@ -6,6 +6,7 @@
 extern "C" {  // its author's header leaves that to who includes it
 #include <liblzf/lzf.h>
 }
+
 #include <algorithm>
 #include <cstring>
 #include <iterator>
