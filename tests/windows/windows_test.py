@@ -113,7 +113,7 @@ class Case(unittest.TestCase):
 class Program(Case):
     def test_says_its_version_as_on_linux(self):
         here, there = self.both("--version")
-        self.assertEqual(there.out, here.out)
+        self.assertEqual(there.out.splitlines()[0], here.out.splitlines()[0])
 
     def test_prints_help_with_lines_that_end_as_on_linux(self):
         here, there = self.both("measure", "--help")
@@ -224,9 +224,7 @@ class Files(Case):
 
 class Library(Case):
     def test_is_called_from_c(self):
-        program = pathlib.Path(WINDOWS).resolve().parents[1] / "tests/mbk_c_test.exe"
-        beside = "Z:" + str(pathlib.Path(WINDOWS).resolve().parent).replace("/", "\\")  # where mbk.dll is
-        ran = self.run_program([WINE, program], {**self.environment, "WINEPATH": beside}, None)
+        ran = self.run_program([WINE, pathlib.Path(WINDOWS).with_name("mbk_c_test.exe")], self.environment, None)
         self.assertEqual(ran.code, 0, ran)
 
 

@@ -1,6 +1,5 @@
-#include <memory>
+#include <CLI/CLI.hpp>
 #include <string>
-#include <vector>
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/output.h"
@@ -11,10 +10,7 @@ namespace mbk::app {
 namespace {
 
 Action add_left_out(Command app, const char* name, const std::string& what) {
-  const std::string about = what + " (on Linux only)";
-  auto words = std::make_shared<std::vector<std::string>>();
-  const Command command = app.add_command(name, about);
-  command.add_option("WORDS", *words, "not looked at");
+  app.add_command(name, what + " (on Linux only)").cli().allow_extras();
   return [name] {
     return report_error({ErrorKind::usage, std::string("'mbk ") + name + "' is not there on Windows",
                          "use mbk on Linux, which can keep real time", ""});

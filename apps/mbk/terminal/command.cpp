@@ -247,7 +247,9 @@ bool Command::is_bare() const {
 }
 
 Parser::Parser(const std::string& name, const std::string& description)
-    : app_(std::make_unique<CLI::App>(description, name)) {}
+    : app_(std::make_unique<CLI::App>(description, name)) {
+  app_->allow_windows_style_options(false);  // "/folder/file" is a file there, too
+}
 
 Parser::~Parser() = default;
 
