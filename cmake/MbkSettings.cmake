@@ -27,10 +27,13 @@ elseif(MBK_WARNINGS_AS_ERRORS)
   target_compile_options(mbk_settings INTERFACE -Werror)
 endif()
 
-# What a program or shared library links to run with glibc 2.34.
+# What a program or shared library links to run with glibc 2.34, and to have paths in UTF-8 on Windows.
 if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|aarch64)$")
-  add_library(mbk_older_glibc OBJECT ${CMAKE_CURRENT_LIST_DIR}/older_glibc.c)
-  target_link_options(mbk_older_glibc INTERFACE -Wl,--wrap=hypot,--wrap=arc4random)
+  add_library(mbk_wrapped OBJECT ${CMAKE_CURRENT_LIST_DIR}/older_glibc.c)
+  target_link_options(mbk_wrapped INTERFACE -Wl,--wrap=hypot,--wrap=arc4random)
+elseif(WIN32)
+  add_library(mbk_wrapped OBJECT ${CMAKE_CURRENT_LIST_DIR}/windows_paths.cpp)
+  target_link_options(mbk_wrapped INTERFACE -Wl,--wrap=_ZNKSt7codecvtIwciE5do_inERiPKcS3_RS3_PwS5_RS5_)
 else()
-  add_library(mbk_older_glibc INTERFACE)
+  add_library(mbk_wrapped INTERFACE)
 endif()

@@ -1,5 +1,5 @@
 /* What keeps mbk from glibc 2.34, that of Ubuntu 22.04 and of Enterprise Linux 9, are two symbols. The linker leads
- * their calls here (--wrap, target mbk_older_glibc), also those in static libraries.
+ * their calls here (--wrap, target mbk_wrapped), also those in static libraries.
  *
  * hypot has a new version since 2.35, which does not set errno. Its first version computes the same to the last bit.
  * arc4random is of 2.36. Only libstdc++ calls it, where it is linked statically: for std::random_device. */

@@ -222,17 +222,17 @@ static void test_stops(void) {
   mbk_answer* answer = NULL;
   mbk_error* error = NULL;
   int asked = 0;
-  const char* const words[] = {"coverage"};
-  mbk_request request = {0};
-  request.size = sizeof request;
-  request.command = "validate";
-  request.words = words;
-  request.word_count = 1;
+  mbk_recording* recording = trial(NULL, NULL);
+  const mbk_option options[] = {{"bootstrap", "100000"}};
+  mbk_request request = {.size = sizeof request, .command = "measure", .options = options, .option_count = 1};
+  request.recordings = (const mbk_recording* const*)&recording;
+  request.recording_count = 1;
   request.stop = at_once;
   request.context = &asked;
   EXPECT(mbk_call(&request, &answer, &error) == MBK_STOPPED);
   EXPECT(answer == NULL && error != NULL && asked > 0);
   mbk_error_free(error);
+  mbk_recording_free(recording);
 }
 
 static void test_messages_name_options_as_the_caller_writes_them(void) {
@@ -387,16 +387,17 @@ static void test_asks_whether_it_is_interrupted(void) {
   mbk_answer* answer = NULL;
   mbk_error* error = NULL;
   int asked = 0;
-  const char* const words[] = {"coverage"};
-  const mbk_option options[] = {{"runs", "100000"}, {"threads", "1"}};
-  mbk_request request = {.size = sizeof request, .command = "validate", .options = options, .option_count = 2};
-  request.words = words;
-  request.word_count = 1;
+  mbk_recording* recording = trial(NULL, NULL);
+  const mbk_option options[] = {{"bootstrap", "100000"}};
+  mbk_request request = {.size = sizeof request, .command = "measure", .options = options, .option_count = 1};
+  request.recordings = (const mbk_recording* const*)&recording;
+  request.recording_count = 1;
   request.interrupted = at_once;
   request.context = &asked;
   EXPECT(mbk_call(&request, &answer, &error) == MBK_STOPPED);
   EXPECT(answer == NULL && error != NULL && asked == 1);
   mbk_error_free(error);
+  mbk_recording_free(recording);
 }
 
 static void test_frees_nothing(void) {

@@ -22,8 +22,8 @@ RELATIVE = 1e-9  # of a number, as other libraries of mathematics round
 ABSOLUTE = 1e-9  # of numbers near zero, in SI units
 NOT_COMPARED = {"software", "input", "file", "files", "command", "created", "added", "time", "elapsed_s"}
 WRONG_USAGE = 2
-# What says how exact a fit is: differences of nearly equal numbers.
-LOOSE = re.compile(r"gradient|condition|p_value|residual")
+# What says how exact a fit is, as differences of nearly equal numbers, and what a deconvolution magnifies.
+LOOSE = re.compile(r"gradient|condition|p_value|residual|impulse_response")
 
 LINUX = os.environ.get("MBK", "")
 WINDOWS = os.environ.get("MBK_WINDOWS", "")
@@ -34,7 +34,10 @@ DATA = os.environ.get("MBK_DATA_DIR")
 def wine_environment():
     folder = tempfile.mkdtemp(prefix="mbk-wine-")
     unittest.addModuleCleanup(shutil.rmtree, folder, True)
-    return {**os.environ, "WINEPREFIX": folder, "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
+    # Wine takes the names of files for UTF-8 and the comma for the decimal sign.
+    subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", f"{folder}/de_DE.UTF-8"], check=True)
+    return {**os.environ, "WINEPREFIX": f"{folder}/wine", "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml=",
+            "LOCPATH": folder, "LC_ALL": "de_DE.UTF-8"}
 
 
 class Ran:
@@ -231,9 +234,9 @@ class Library(Case):
 class Places(Case):
     def test_with_a_decimal_comma_change_no_number(self):
         file = self.simulated()
-        plain = self.windows("measure", file, "--json")
-        comma = self.windows("measure", file, "--json", LC_ALL="de_DE.UTF-8", LANG="de_DE.UTF-8")
-        self.assertEqual((comma.code, comma.bytes), (plain.code, plain.bytes))
+        comma = self.windows("measure", file, "--json")
+        point = self.windows("measure", file, "--json", LC_ALL="C")
+        self.assertEqual((comma.code, comma.bytes), (point.code, point.bytes))
 
 
 class Reports(Case):
