@@ -199,8 +199,9 @@ class Parts(Case):
         self.refused(WRONG_USAGE, "reproduce", "--only", "table-9.9", "--out", self.folder / "new", says=["table-9.9", "--list"])
 
     def test_an_erratum_is_found_by_its_old_name(self):
-        document = self.fine("reproduce", "--only", "slip-4", "--out", self.folder / "old", "--json", "--quiet").json
-        self.assertEqual([exhibit["id"] for exhibit in document["exhibits"]], ["erratum-4"])
+        ran = self.mbk("reproduce", "--only", "slip-4", "--out", self.folder / "old", "--json", "--quiet")
+        self.assertEqual([exhibit["id"] for exhibit in ran.json["exhibits"]], ["erratum-4"])
+        self.assertIn("warning: slip-4 is now erratum-4", ran.err)
         self.refused(WRONG_USAGE, "reproduce", "--only", "slip-15", "--out", self.folder / "none", says="erratum-15")
 
     def test_list_names_everything(self):

@@ -79,7 +79,7 @@ class Simulated(Case):
     def test_the_former_name_of_held_out_is_still_read(self):
         one, two = free_motion(1), free_motion(2)
         self.assertEqual(self.identify(one, "--held-back", two), self.identify(one, "--held-out", two))
-        former = self.fine("robot", "identify", one, "--held-back", two)
+        former = self.mbk("robot", "identify", one, "--held-back", two)
         self.assertIn("warning: --held-back is now --held-out", former.err)
         self.assertNotIn("held-back", self.fine("robot", "identify", "--help").out)
 

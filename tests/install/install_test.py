@@ -91,12 +91,12 @@ class Installed(unittest.TestCase):
         return self.configured("finding/build", project, code, "--fresh")
 
     def test_only_a_fitting_version_is_found(self):
-        for version in ("0.2", "1.0"):
-            self.assertIn("mbkConfig.cmake, version: 0.1", self.found(f"{version} REQUIRED", code=1))
+        for version in ("0.1", "1.1", "2.0"):
+            self.assertIn("mbkConfig.cmake, version: 1.0", self.found(f"{version} REQUIRED", code=1))
 
     def test_modules_are_components(self):
-        self.found("0.1 REQUIRED COMPONENTS measurement recording")
-        self.assertIn("nonsense", self.found("0.1 REQUIRED COMPONENTS nonsense", code=1))
+        self.found("1.0 REQUIRED COMPONENTS measurement recording")
+        self.assertIn("nonsense", self.found("1.0 REQUIRED COMPONENTS nonsense", code=1))
 
     def test_no_path_of_the_tree_stands_in_what_is_installed(self):
         paths = [str(SOURCE), str(pathlib.Path(program("BUILD")).resolve()), str(self.prefix)]
