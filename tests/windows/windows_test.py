@@ -80,8 +80,8 @@ class Case(unittest.TestCase):
         self.assertEqual(there.code, here.code, f"{arguments}\n{here}\n{there}")
         return here, there
 
-    def assert_same(self, there, here, where=""):
-        """Two documents of JSON, but for what names a file or a moment."""
+    def assert_same(self, there, here, where="", beside=0.0):
+        """Two documents of JSON, but for what names a file or a moment. beside: the largest number of the row"""
         if isinstance(here, dict):
             self.assertEqual(list(there), list(here), where)
             for key, value in here.items():
@@ -89,11 +89,12 @@ class Case(unittest.TestCase):
                     self.assert_same(there[key], value, f"{where}.{key}")
         elif isinstance(here, list):
             self.assertEqual(len(there), len(here), where)
+            beside = max((abs(one) for one in here if isinstance(one, float)), default=0.0)
             for k, value in enumerate(here):
-                self.assert_same(there[k], value, f"{where}[{k}]")
+                self.assert_same(there[k], value, f"{where}[{k}]", beside)
         elif isinstance(here, float) or isinstance(there, float):
             scale = 1e3 if LOOSE.search(where) else 1.0
-            self.assertTrue(math.isclose(there, here, rel_tol=scale * RELATIVE, abs_tol=scale * ABSOLUTE),
+            self.assertTrue(math.isclose(there, here, rel_tol=scale * RELATIVE, abs_tol=scale * max(ABSOLUTE, RELATIVE * beside)),
                             f"{where}: {there!r} instead of {here!r}")
         elif isinstance(here, str) and isinstance(there, str) and re.search(r"\d", here):
             return  # a sentence with numbers

@@ -9,10 +9,11 @@ namespace {
 
 constexpr double kRelative = 1e-6, kAbsolute = 1e-9;
 
-bool equal_but_for_rounding(const nlohmann::json& a, const nlohmann::json& b) {
+/// @param scale  magnitude of what stands beside them
+bool equal_but_for_rounding(const nlohmann::json& a, const nlohmann::json& b, double scale = 0.0) {
   if (a.is_number() && b.is_number()) {
     const auto x = a.get<double>(), y = b.get<double>();
-    return std::abs(x - y) <= std::max(kAbsolute, kRelative * std::max(std::abs(x), std::abs(y)));
+    return std::abs(x - y) <= std::max(kAbsolute, kRelative * std::max({scale, std::abs(x), std::abs(y)}));
   }
   if (a.type() != b.type() || a.size() != b.size()) return false;
   if (a.is_object()) {
@@ -22,7 +23,13 @@ bool equal_but_for_rounding(const nlohmann::json& a, const nlohmann::json& b) {
     }
     return true;
   }
-  if (a.is_array()) return std::equal(a.begin(), a.end(), b.begin(), equal_but_for_rounding);
+  if (a.is_array()) {
+    for (const auto& one : a) {
+      if (one.is_number()) scale = std::max(scale, std::abs(one.get<double>()));
+    }
+    return std::equal(a.begin(), a.end(), b.begin(),
+                      [&](const auto& x, const auto& y) { return equal_but_for_rounding(x, y, scale); });
+  }
   return a == b;
 }
 

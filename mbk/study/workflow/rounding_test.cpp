@@ -19,6 +19,8 @@ TEST(SameButForRounding, LooksAtNumbersAndAtNothingElse) {
                             R"({"K": [[46.0, -28.9], [0, 0]], "code": "none", "passive": true})", "damaged"}) {
     EXPECT_FALSE(same_but_for_rounding(stored, other)) << other;
   }
+  EXPECT_TRUE(same_but_for_rounding("[57074, -2.33]", "[57074, -2.34]"));  // of a row, the largest counts
+  EXPECT_FALSE(same_but_for_rounding("[57074, -2.3]", "[57074, -2.5]"));
   EXPECT_FALSE(same_but_for_rounding("damaged", "damaged"));
 }
 
