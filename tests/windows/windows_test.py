@@ -127,9 +127,10 @@ class Program(Case):
     def test_refuses_what_needs_real_time(self):
         for command in ("run", "validate", "reproduce", "work"):
             with self.subTest(command):
-                refused = self.windows(command, "--seed", 1)
-                self.assertEqual(refused.code, WRONG_USAGE, refused)
-                self.assertIn("Linux", refused.err)
+                for words in ((), ("--seed", 1), ("word", "--status")):
+                    refused = self.windows(command, *words)
+                    self.assertEqual(refused.code, WRONG_USAGE, refused)
+                    self.assertIn("Linux", refused.err)
 
     def test_refuses_wrong_words_as_on_linux(self):
         here, there = self.both("measure", "nothing.csv", "--highpass", "x")
