@@ -17,6 +17,12 @@ microseconds() { printf '%s' "${EPOCHREALTIME//[.,]/}"; }
 # epoch: artefacts bear the time of the commit, so that who builds them again gets the same
 epoch() { export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}; }
 
+# licence_texts FOLDER: the texts to which the licences of Debian's packages refer by their place
+licence_texts() {
+  mkdir -p "$1"
+  cp --dereference /usr/share/common-licenses/{LGPL-2.1,GPL-3,GPL-2,MPL-2.0,CC0-1.0} "$1/"
+}
+
 # step WHAT COMMAND...: one line when it goes well, with the time if that was more than a second; otherwise the end
 # of what the command said, where the rest is, and the command's exit code.
 step() {

@@ -8,8 +8,9 @@ namespace {
 
 /// The index of the input that `word` refers to; `count` if there is none.
 std::size_t place_of(const std::filesystem::path& word, std::size_t count, std::string (*word_of)(std::size_t)) {
+  const std::string text = word.string();
   std::size_t k = 0;
-  while (k < count && word.string() != word_of(k)) ++k;
+  while (k < count && text != word_of(k)) ++k;
   return k;
 }
 

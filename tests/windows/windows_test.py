@@ -95,6 +95,7 @@ class Case(unittest.TestCase):
                 self.assert_same(there[k], value, f"{where}[{k}]", beside)
         elif isinstance(here, float) or isinstance(there, float):
             scale = 1e3 if self.loose or LOOSE.search(where) else 1.0
+            beside = beside if self.loose else 0.0
             self.assertTrue(math.isclose(there, here, rel_tol=scale * RELATIVE, abs_tol=scale * max(ABSOLUTE, RELATIVE * beside)),
                             f"{where}: {there!r} instead of {here!r}")
         elif isinstance(here, str) and isinstance(there, str) and re.search(r"\d", here):

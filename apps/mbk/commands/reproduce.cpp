@@ -47,7 +47,7 @@ std::string current_id(const std::string& id) {
   constexpr std::string_view kBefore = "slip-";
   if (!id.starts_with(kBefore)) return id;
   const std::string now = "erratum-" + id.substr(kBefore.size());
-  say("warning: {} is now {}; the former name goes with mbk 1.2\n", id, now);
+  say_former_name(id, now);
   return now;
 }
 

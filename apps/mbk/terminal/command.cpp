@@ -179,7 +179,7 @@ void Command::accept_former_name(Option option, const std::string& former) const
   add_option_function(
       former,
       [&now, former](const std::vector<std::string>& given) {
-        say("warning: {} is now {}; the former name goes with mbk 1.2\n", former, now.get_name());
+        say_former_name(former, now.get_name());
         for (const std::string& value : given) now.add_result(value);
         now.run_callback();
       },

@@ -42,6 +42,11 @@ void say(fmt::format_string<Args...> format, Args&&... args) noexcept {
   }
 }
 
+/// Warns that `former` is a name from before 1.0, which is still read.
+inline void say_former_name(std::string_view former, std::string_view now) noexcept {
+  say("warning: {} is now {}; the former name goes with mbk 1.2\n", former, now);
+}
+
 /// Waits until every message is written, for at most this time; the rest is discarded and counted as lost.
 /// @returns  whether every message was written
 bool flush_messages(std::chrono::milliseconds longest = std::chrono::milliseconds(200)) noexcept;
